@@ -1,0 +1,114 @@
+//! What an estimator works with: the scene, a random stream and the tally. Cost accrues here, because only here can
+//! a ray be traced.
+
+use crate::sampling::Stream;
+use crate::scene::{Hit, LightSampling, Ray, Rgb, Scene};
+use glam::DVec3;
+
+/// Bounces 0 to 7 have a bin each; the last bin holds all later ones.
+pub const BINS: usize = 9;
+
+/// A realization that traces more rays than this is a runaway walk and makes its cell invalid.
+pub const MAX_RAYS: u64 = 1 << 26;
+
+/// What realizations have added up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// The present path's contribution, all bounces.
+    pub value: Rgb,
+    /// Contributions by bounce, over all paths since the tally was made.
+    pub bounces: [Rgb; BINS],
+    /// Rays traced: camera, continued and shadow rays count one each.
+    pub rays: u64,
+    /// Contributions that were not finite.
+    pub non_finite: u64,
+    /// Contributions that were negative.
+    pub negative: u64,
+    /// Walks cut at [`MAX_RAYS`].
+    pub runaway: u64,
+}
+
+/// The context of one path.
+pub struct Ctx<'a> {
+    /// The scene, for its materials and emitters.
+    scene: &'a Scene,
+    /// Where chance comes from.
+    stream: Stream,
+    /// What is counted.
+    tally: &'a mut Tally,
+    /// Factor from radiance to the sensor's quantity.
+    response: f64,
+    /// The tally's rays at which this path is cut.
+    limit: u64,
+}
+
+impl<'a> Ctx<'a> {
+    /// A context for one path; `response` turns radiance into the sensor's quantity.
+    #[inline]
+    pub fn new(scene: &'a Scene, stream: Stream, tally: &'a mut Tally, response: f64) -> Self {
+        tally.value = Rgb::ZERO;
+        let limit = tally.rays + MAX_RAYS;
+        Ctx { scene, stream, tally, response, limit }
+    }
+
+    /// Traces a ray: the lit side of the nearest surface, or `None` for the void and for black backs.
+    #[inline]
+    pub fn hit(&mut self, ray: &Ray) -> Option<Hit> {
+        self.tally.rays += 1;
+        if self.tally.rays > self.limit {
+            self.tally.runaway += 1;
+            return None;
+        }
+        self.scene.intersect(ray)
+    }
+
+    /// Records a contribution [W m^-2 sr^-1] of light that was scattered `bounce` times.
+    #[inline]
+    pub fn add(&mut self, bounce: u32, radiance: Rgb) {
+        let value = radiance * self.response;
+        self.tally.non_finite += u64::from(!value.is_finite());
+        self.tally.negative += u64::from(value.min_element() < 0.0);
+        self.tally.value += value;
+        self.tally.bounces[(bounce as usize).min(BINS - 1)] += value;
+    }
+
+    /// A uniform number in [0, 1).
+    #[inline]
+    pub fn u1(&mut self) -> f64 {
+        self.stream.u1()
+    }
+
+    /// A point of the unit square.
+    #[inline]
+    pub fn u2(&mut self) -> (f64, f64) {
+        self.stream.u2()
+    }
+
+    /// Russian roulette and splitting: floor(q + u) copies, q of them on average; each is to be weighted 1/q
+    /// [Arvo & Kirk 1990].
+    #[inline]
+    pub fn copies(&mut self, q: f64) -> u32 {
+        if q == 0.0 || q == 1.0 { q as u32 } else { (q + self.stream.u1()) as u32 }
+    }
+
+    /// Next-event estimation: the radiance that `x` reflects of one sampled point on an emitter,
+    /// f cos θ le V / pdf [Veach 1997, eq. 8.2], or zero where nothing arrives.
+    #[inline]
+    pub fn direct(&mut self, x: &Hit, lights: LightSampling) -> Rgb {
+        let pick = if self.scene.light_count() > 1 { self.u1() } else { 0.0 };
+        let point = self.u2();
+        let Some(light) = self.scene.sample_light(lights, x.p, pick, point) else { return Rgb::ZERO };
+        let cos = x.n.dot(light.to_light) / light.distance;
+        if cos <= 0.0 || !self.visible(x, light.to_light, light.surface) {
+            return Rgb::ZERO;
+        }
+        x.material.f() * light.le * (cos / light.pdf.0)
+    }
+
+    /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface.
+    #[inline]
+    fn visible(&mut self, x: &Hit, to_light: DVec3, surface: u32) -> bool {
+        self.tally.rays += 1;
+        self.scene.visible(&x.spawn(to_light), surface)
+    }
+}

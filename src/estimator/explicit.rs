@@ -1,0 +1,64 @@
+//! Explicit path tracing: direct light is sampled on the emitters, indirect light by one continued direction.
+//!
+//! - estimates: radiance, L = Le + Ld + Lind, where Lind must not see Le again [Kajiya 1986; Veach 1997, sec. 8.2]
+//! - property: unbiased; with a clamp, biased by the light of later bounces
+//! - cost: a shadow ray and a continued ray a vertex
+//! - fails when: an emitter touches what it lights (infinite variance when sampled over its area)
+
+use super::{Ctx, Estimate, Property, Roulette};
+use crate::scene::{Directions, LightSampling, Ray, Rgb};
+use serde::{Deserialize, Serialize};
+
+/// Next-event estimation at each vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Explicit {
+    /// How points on emitters are drawn.
+    pub lights: LightSampling,
+    /// How continued directions are drawn.
+    pub directions: Directions,
+    /// When the walk ends.
+    pub roulette: Roulette,
+}
+
+impl Estimate for Explicit {
+    #[inline]
+    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
+        self.walk(ray, Rgb::ONE, 0, cx);
+    }
+
+    fn property(&self) -> Property {
+        Property::of(&self.roulette)
+    }
+}
+
+impl Explicit {
+    fn walk(&self, mut ray: Ray, mut beta: Rgb, mut bounce: u32, cx: &mut Ctx<'_>) {
+        loop {
+            let Some(x) = cx.hit(&ray) else { return };
+            if bounce == 0 {
+                cx.add(0, x.material.le); // seen directly; later on the emitter was sampled from the vertex before
+            }
+            bounce += 1;
+            if !self.roulette.reaches(bounce) {
+                return;
+            }
+            let direct = cx.direct(&x, self.lights);
+            cx.add(bounce, beta * direct);
+            if !self.roulette.reaches(bounce + 1) {
+                return;
+            }
+            let q = self.roulette.q(bounce - 1, beta, x.material.albedo);
+            let copies = cx.copies(q);
+            if copies == 0 {
+                return;
+            }
+            for _ in 1..copies {
+                let s = self.directions.sample(&x.material, x.n, cx.u2());
+                self.walk(x.spawn(s.wi), beta * s.weight / q, bounce, cx);
+            }
+            let s = self.directions.sample(&x.material, x.n, cx.u2());
+            beta *= s.weight / q;
+            ray = x.spawn(s.wi);
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Implicit path tracing: one random walk, light is found by chance.
+//!
+//! - estimates: radiance, L = Le + T L [Kajiya 1986, eq. 6], one sample of the integral at each vertex
+//! - property: unbiased; with a clamp, biased by the light of later bounces
+//! - cost: one ray a vertex
+//! - fails when: emitters are small (nearly all paths return zero) or points (none ever finds one)
+
+use super::{Ctx, Estimate, Property, Roulette};
+use crate::scene::{Directions, Ray, Rgb};
+use serde::{Deserialize, Serialize};
+
+/// One sample at each vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Implicit {
+    /// How continued directions are drawn.
+    pub directions: Directions,
+    /// When the walk ends.
+    pub roulette: Roulette,
+}
+
+impl Estimate for Implicit {
+    #[inline]
+    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
+        self.walk(ray, Rgb::ONE, 0, cx);
+    }
+
+    fn property(&self) -> Property {
+        Property::of(&self.roulette)
+    }
+}
+
+impl Implicit {
+    fn walk(&self, mut ray: Ray, mut beta: Rgb, mut bounce: u32, cx: &mut Ctx<'_>) {
+        loop {
+            let Some(x) = cx.hit(&ray) else { return };
+            cx.add(bounce, beta * x.material.le);
+            bounce += 1;
+            if !self.roulette.reaches(bounce) {
+                return;
+            }
+            let q = self.roulette.q(bounce - 1, beta, x.material.albedo);
+            let copies = cx.copies(q);
+            if copies == 0 {
+                return;
+            }
+            for _ in 1..copies {
+                let s = self.directions.sample(&x.material, x.n, cx.u2());
+                self.walk(x.spawn(s.wi), beta * s.weight / q, bounce, cx);
+            }
+            let s = self.directions.sample(&x.material, x.n, cx.u2());
+            beta *= s.weight / q;
+            ray = x.spawn(s.wi);
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! When a walk ends: every termination rule, for every estimator.
+//!
+//! A rule gives q, the expected number of continuations after a vertex. q <= 1 is a survival probability, q > 1 splits;
+//! whoever goes on is weighted 1/q, so that the mean is kept whatever q > 0 is. The lecture's termination probability
+//! chi is 1 - q.
+
+use crate::scene::Rgb;
+use serde::{Deserialize, Serialize};
+
+/// How q is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rule {
+    /// q = 1: only a clamp ends the walk.
+    None,
+    /// The same q everywhere.
+    Constant {
+        /// Expected number of continuations, > 0.
+        q: f64,
+    },
+    /// q = the largest channel of the surface's albedo.
+    Albedo,
+    /// q = the largest channel of beta x albedo, at least `floor` and at most 1.
+    Throughput {
+        /// Lower limit of q, in (0, 1]: throughput that falls to zero must not survive with probability zero.
+        floor: f64,
+    },
+}
+
+/// A termination rule.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Roulette {
+    /// How q is chosen.
+    pub rule: Rule,
+    /// The first `from` bounces are certain.
+    pub from: u32,
+    /// Light scattered more often than this is left out, which biases the result.
+    pub clamp: Option<u32>,
+}
+
+impl Roulette {
+    /// No roulette: at most `bounces` scattering events.
+    pub fn depth_clamp(bounces: u32) -> Self {
+        Roulette { rule: Rule::None, from: 0, clamp: Some(bounces) }
+    }
+
+    /// The given rule from the first bounce on, without a clamp.
+    pub fn unclamped(rule: Rule) -> Self {
+        Roulette { rule, from: 0, clamp: None }
+    }
+
+    /// Whether light scattered `bounce` times is counted.
+    #[inline]
+    pub fn reaches(&self, bounce: u32) -> bool {
+        self.clamp.is_none_or(|clamp| bounce <= clamp)
+    }
+
+    /// Expected number of continuations from a vertex with `albedo`, reached after `bounce` scattering events with
+    /// throughput `beta`; 0 where albedo is 0, because nothing goes on.
+    #[inline]
+    pub fn q(&self, bounce: u32, beta: Rgb, albedo: Rgb) -> f64 {
+        if albedo == Rgb::ZERO {
+            return 0.0;
+        }
+        if bounce < self.from {
+            return 1.0;
+        }
+        match self.rule {
+            Rule::None => 1.0,
+            Rule::Constant { q } => q,
+            Rule::Albedo => albedo.max_element(),
+            Rule::Throughput { floor } => (beta * albedo).max_element().clamp(floor, 1.0),
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! What is kept of the realizations: mergeable moments, never single samples.
+
+use crate::estimator::{BINS, Tally};
+use crate::scene::Rgb;
+use crate::stats::Moments;
+use serde::{Deserialize, Serialize};
+
+/// One set of moments a channel.
+pub type Channels = [Moments; 3];
+
+fn push(channels: &mut Channels, value: Rgb) {
+    for (moments, x) in channels.iter_mut().zip(value.to_array()) {
+        moments.push(x);
+    }
+}
+
+fn merge(channels: &mut Channels, other: &Channels) {
+    for (moments, o) in channels.iter_mut().zip(other) {
+        moments.merge(o);
+    }
+}
+
+/// What one block of realizations yields.
+pub struct Block {
+    /// Value of a realization: a path's radiance, or the mean of an image pass.
+    pub total: Channels,
+    /// Rays of a realization.
+    pub cost: Moments,
+    /// Realizations whose value is zero in all channels.
+    pub zeros: u64,
+    /// Contributions by bounce, and what went wrong.
+    pub tally: Tally,
+    /// Pixel by pixel; empty for a probe.
+    pub pixels: Pixels,
+    pass: Rgb,
+}
+
+/// Moments of each pixel's samples, in structure-of-arrays form.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pixels {
+    /// Pixels from left to right.
+    pub width: u32,
+    /// Pixels from top to bottom.
+    pub height: u32,
+    /// Samples a pixel.
+    pub n: u64,
+    /// Mean of each pixel, row by row from the top left.
+    pub mean: Vec<Rgb>,
+    /// Sum of squared deviations of each pixel.
+    pub m2: Vec<Rgb>,
+}
+
+impl Block {
+    /// An empty block for a sensor of this resolution.
+    pub fn new(width: u32, height: u32) -> Self {
+        let count = if width * height > 1 { (width * height) as usize } else { 0 };
+        let empty = vec![Rgb::ZERO; count];
+        Block {
+            total: Channels::default(),
+            cost: Moments::default(),
+            zeros: 0,
+            tally: Tally::default(),
+            pixels: Pixels { width, height, n: 0, mean: empty.clone(), m2: empty },
+            pass: Rgb::ZERO,
+        }
+    }
+
+    /// Takes one pixel's sample of the present realization.
+    #[inline]
+    pub fn pixel(&mut self, pixel: usize, value: Rgb) {
+        self.pass += value;
+        if let Some(mean) = self.pixels.mean.get_mut(pixel) {
+            let delta = value - *mean;
+            *mean += delta / (self.pixels.n + 1) as f64;
+            self.pixels.m2[pixel] += delta * (value - *mean);
+        }
+    }
+
+    /// Closes a realization that traced so many rays.
+    #[inline]
+    pub fn realization(&mut self, rays: f64) {
+        let pixels = f64::from(self.pixels.width) * f64::from(self.pixels.height);
+        let value = self.pass / pixels;
+        self.zeros += u64::from(value == Rgb::ZERO);
+        push(&mut self.total, value);
+        self.cost.push(rays);
+        self.pixels.n += 1;
+        self.pass = Rgb::ZERO;
+    }
+
+    /// Takes over the tally of all its paths.
+    pub fn close(&mut self, tally: Tally) {
+        self.tally = tally;
+    }
+}
+
+/// The merged blocks of one cell.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Value of a realization.
+    pub total: Channels,
+    /// Means of blocks: their spread gives the standard error.
+    pub blocks: Channels,
+    /// Block means of each bounce; the last bin holds all later ones.
+    pub bounces: Vec<Channels>,
+    /// Rays of a realization.
+    pub cost: Moments,
+    /// Realizations whose value is zero in all channels.
+    pub zeros: u64,
+    /// Contributions that were not finite.
+    pub non_finite: u64,
+    /// Contributions that were negative.
+    pub negative: u64,
+    /// Walks that were cut.
+    pub runaway: u64,
+    /// Variance of one sample of a pixel, averaged over the image, a value a block; unused for a probe.
+    pub pixel_variance: Channels,
+    /// Median over the image of the variance of a pixel's sample.
+    pub median_variance: [f64; 3],
+    /// Means of [`TILES`] x [`TILES`] tiles, row by row from the top left; empty if they do not divide the image.
+    pub tiles: Vec<[Measured; 3]>,
+    /// Pixel by pixel; empty for a probe. Kept as an image, not in the store.
+    #[serde(skip)]
+    pub pixels: Pixels,
+}
+
+/// An image is divided into so many tiles along each edge.
+pub const TILES: u32 = 4;
+
+/// A mean with its standard error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The mean.
+    pub mean: f64,
+    /// Its standard error.
+    pub std_error: f64,
+}
+
+impl Cell {
+    /// Sums up the image, once all blocks are in.
+    pub fn finish(&mut self) {
+        let pixels = &self.pixels;
+        if !pixels.is_image() {
+            return;
+        }
+        let variance = pixels.variance();
+        self.median_variance = [0, 1, 2].map(|c| {
+            let mut values: Vec<f64> = variance.iter().map(|v| v[c]).collect();
+            values.sort_by(f64::total_cmp);
+            0.5 * (values[(values.len() - 1) / 2] + values[values.len() / 2])
+        });
+        if pixels.width % TILES == 0 && pixels.height % TILES == 0 {
+            self.tiles = (0..TILES * TILES).map(|tile| pixels.tile(tile % TILES, tile / TILES)).collect();
+        }
+    }
+
+    /// Adds the next block; blocks must come in order.
+    pub fn merge(&mut self, block: &Block) {
+        merge(&mut self.total, &block.total);
+        self.cost.merge(&block.cost);
+        let mean = |moments: &Channels| Rgb::from_array(moments.map(|m| m.mean));
+        push(&mut self.blocks, mean(&block.total));
+        self.bounces.resize(BINS, Channels::default());
+        let paths = block.cost.n as f64 * f64::from(block.pixels.width) * f64::from(block.pixels.height);
+        for (bounce, &sum) in self.bounces.iter_mut().zip(&block.tally.bounces) {
+            push(bounce, sum / paths);
+        }
+        self.zeros += block.zeros;
+        self.non_finite += block.tally.non_finite;
+        self.negative += block.tally.negative;
+        self.runaway += block.tally.runaway;
+        if block.pixels.is_image() {
+            let variance = block.pixels.variance();
+            push(&mut self.pixel_variance, variance.iter().sum::<Rgb>() / variance.len() as f64);
+            self.pixels.merge(&block.pixels);
+        }
+    }
+
+    /// Why nothing can be concluded from this cell, if so.
+    pub fn invalid(&self) -> Option<String> {
+        let complaint = |count: u64, what: &str| (count > 0).then(|| format!("{count} {what}"));
+        complaint(self.non_finite, "contributions were not finite")
+            .or_else(|| complaint(self.negative, "contributions were negative"))
+            .or_else(|| complaint(self.runaway, "walks ran away and were cut"))
+    }
+}
+
+impl Pixels {
+    fn merge(&mut self, other: &Pixels) {
+        if self.n == 0 {
+            *self = other.clone();
+            return;
+        }
+        let n = (self.n + other.n) as f64;
+        let (share, cross) = (other.n as f64 / n, self.n as f64 * other.n as f64 / n);
+        for i in 0..self.mean.len() {
+            let delta = other.mean[i] - self.mean[i];
+            self.mean[i] += delta * share;
+            self.m2[i] += other.m2[i] + delta * delta * cross;
+        }
+        self.n += other.n;
+    }
+
+    /// Unbiased variance of one sample of each pixel; needs two samples.
+    pub fn variance(&self) -> Vec<Rgb> {
+        self.m2.iter().map(|&m2| m2 / (self.n - 1) as f64).collect()
+    }
+
+    /// Whether there is an image.
+    pub fn is_image(&self) -> bool {
+        !self.mean.is_empty()
+    }
+
+    /// Mean over one tile; pixels are independent.
+    fn tile(&self, x: u32, y: u32) -> [Measured; 3] {
+        let (w, h) = (self.width / TILES, self.height / TILES);
+        let count = f64::from(w * h);
+        let (mut mean, mut m2) = (Rgb::ZERO, Rgb::ZERO);
+        for row in y * h..(y + 1) * h {
+            for column in x * w..(x + 1) * w {
+                let i = (row * self.width + column) as usize;
+                mean += self.mean[i];
+                m2 += self.m2[i];
+            }
+        }
+        let samples = ((self.n - 1) * self.n) as f64;
+        [0, 1, 2].map(|c| Measured { mean: mean[c] / count, std_error: (m2[c] / samples).sqrt() / count })
+    }
+}

@@ -1,0 +1,181 @@
+//! Every combination of a file's scenes, estimators and termination rules, each refused where it cannot work.
+
+use super::choices::{self, Choice};
+use super::error::Error;
+use super::plan::CellPlan;
+use super::spec::{Grid, Spec, Streams};
+use crate::estimator::{Estimate, Estimator, Property, Roulette, Rule};
+use crate::sampling::Address;
+use crate::scene::Scene;
+use crate::scene::library::SceneKind;
+use crate::truth::ClosedForm;
+use serde::Serialize;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+
+/// A choice and the place where it is written.
+struct Written<T> {
+    choice: Choice<T>,
+    span: Range<usize>,
+}
+
+type Axis<S> = Spanned<Vec<Spanned<super::input::Named<S>>>>;
+
+/// All cells of the file, without their samples, and the names of its swept parameters.
+pub fn resolve(spec: &Spec, file: &Path, source: &str) -> Result<(Vec<CellPlan>, Vec<String>), Error> {
+    let at = |span: Range<usize>, message: String| Error::at(file, source, span, message);
+    let mut cells = Vec::new();
+    let mut swept = Vec::new();
+    for grid in &spec.grid.0 {
+        grid_cells(spec, grid, &at, &mut cells, &mut swept)?;
+    }
+    if cells.is_empty() {
+        return Err(Error::Refused(format!("{}: an empty list of grids leaves nothing to run", file.display())));
+    }
+    Ok((cells, swept))
+}
+
+fn grid_cells(
+    spec: &Spec,
+    grid: &Grid,
+    at: &dyn Fn(Range<usize>, String) -> Error,
+    cells: &mut Vec<CellPlan>,
+    swept: &mut Vec<String>,
+) -> Result<(), Error> {
+    let scenes = axis(&grid.scene, "scenes", at, choices::scenes)?;
+    let estimators = axis(&grid.estimator, "estimators", at, |s| Ok(choices::estimators(s)))?;
+    let roulettes = axis(&grid.roulette, "termination rules", at, |s| Ok(choices::roulettes(s)))?;
+    for scene in &scenes {
+        let built = scene.choice.value.build();
+        for estimator in &estimators {
+            for roulette in &roulettes {
+                let whole = estimator.choice.value.with(roulette.choice.value);
+                lit(&whole, &built).map_err(|e| at(scene.span.clone(), e))?;
+                ends(&whole, &built).map_err(|e| at(roulette.span.clone(), e))?;
+                let params =
+                    [&scene.choice.params, &estimator.choice.params, &roulette.choice.params].into_iter().flatten();
+                for &(name, _, is_swept) in params.clone() {
+                    if is_swept && !swept.iter().any(|s| s == name) {
+                        swept.push(name.to_owned());
+                    }
+                }
+                cells.push(CellPlan {
+                    scene: scene.choice.value.clone(),
+                    scene_label: scene.choice.label.clone(),
+                    estimator: whole,
+                    estimator_label: estimator.choice.label.clone(),
+                    roulette_label: roulette.choice.label.clone(),
+                    params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
+                    samples: grid.samples.unwrap_or(spec.samples),
+                    block: 0,
+                    pixels: 0,
+                    rays: rays(&scene.choice.value, &built, &whole),
+                    address: address(spec, &scene.choice.value, &whole),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The choices of one axis of the grid, their sweeps written out.
+fn axis<S, T>(
+    written: &Axis<S>,
+    what: &str,
+    at: &dyn Fn(Range<usize>, String) -> Error,
+    resolve: impl Fn(&S) -> Result<Vec<Choice<T>>, String>,
+) -> Result<Vec<Written<T>>, Error> {
+    if written.get_ref().is_empty() {
+        let message = format!("an empty list of {what} leaves nothing to run; give at least one");
+        return Err(at(written.span(), message));
+    }
+    let mut all = Vec::new();
+    for one in written.get_ref() {
+        let choices = resolve(&one.get_ref().0).map_err(|message| at(one.span(), message))?;
+        all.extend(choices.into_iter().map(|choice| Written { choice, span: one.span() }));
+    }
+    Ok(all)
+}
+
+/// Direct light can only be sampled where something emits.
+fn lit(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
+    match estimator {
+        Estimator::Explicit(_) if scene.light_count() == 0 => Err("this scene has no light, and `explicit` \
+             samples lights; give a surface an emission above 0, or use `implicit`"
+            .to_owned()),
+        _ => Ok(()),
+    }
+}
+
+/// Every walk must end by its rule: by a clamp, or because q stays below 1.
+fn ends(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
+    let roulette = estimator.roulette();
+    if roulette.clamp.is_some() || largest_q(roulette, scene) < 1.0 {
+        return Ok(());
+    }
+    Err(match roulette.rule {
+        Rule::None => "a walk without roulette cannot end in a closed scene; use depth_clamp".to_owned(),
+        Rule::Constant { q } => {
+            format!("with q = {q} a walk in a closed scene cannot end; use q < 1 or add clamp = 16, say")
+        }
+        Rule::Albedo | Rule::Throughput { .. } => "this scene has a surface of albedo 1, on which this rule never \
+             ends a walk; use a constant q < 1 or add clamp = 16, say"
+            .to_owned(),
+    })
+}
+
+/// The largest q that the rule settles to.
+fn largest_q(roulette: &Roulette, scene: &Scene) -> f64 {
+    match roulette.rule {
+        Rule::None => 1.0,
+        Rule::Constant { q } => q,
+        Rule::Albedo => scene.max_albedo(),
+        Rule::Throughput { floor } => scene.max_albedo().max(floor),
+    }
+}
+
+/// Expected rays a realization: by theory, else an upper bound from a closed scene of the largest albedo.
+fn rays(kind: &SceneKind, scene: &Scene, estimator: &Estimator) -> f64 {
+    let (width, height) = scene.sensor.resolution();
+    let pixels = f64::from(width) * f64::from(height);
+    let theory = ClosedForm::of(kind, estimator).and_then(|closed| closed.rays());
+    pixels * theory.unwrap_or_else(|| ray_bound(estimator, scene))
+}
+
+fn ray_bound(estimator: &Estimator, scene: &Scene) -> f64 {
+    let (branches, per_vertex) = match estimator {
+        Estimator::Recursive(e) => (f64::from(e.samples), 1.0),
+        Estimator::Implicit(_) => (1.0, 1.0),
+        Estimator::Explicit(_) => (1.0, 2.0),
+    };
+    let roulette = estimator.roulette();
+    let settled = branches * largest_q(roulette, scene);
+    let mut sum = 1.0;
+    let mut reached = 1.0;
+    let last = match estimator.property() {
+        Property::Clamped { bounces } => bounces,
+        Property::Unbiased => roulette.from,
+    };
+    for bounce in 0..last {
+        reached *= if bounce < roulette.from { branches } else { settled };
+        sum += reached;
+    }
+    if estimator.property() == Property::Unbiased {
+        sum += reached * settled / (1.0 - settled);
+    }
+    per_vertex * sum
+}
+
+/// A stream's address is its content: adding a cell changes no other cell.
+fn address(spec: &Spec, scene: &SceneKind, estimator: &Estimator) -> Address {
+    let estimator = match spec.streams {
+        Streams::Independent => json(estimator),
+        Streams::Paired => "paired".to_owned(),
+    };
+    Address::of(&[&spec.seed.to_string(), &json(scene), &estimator, "path"])
+}
+
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).expect("plain numbers and names have a JSON form")
+}

@@ -1,0 +1,237 @@
+//! Reading what a user wrote: each wrong value is refused where it stands, with what would be right.
+
+use crate::scene::Rgb;
+use serde::de::value::{MapAccessDeserializer, MapDeserializer};
+use serde::de::{DeserializeOwned, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+
+/// A choice written as a bare name, `"albedo"`, or with its parameters, `{ albedo = { from = 3 } }`.
+#[derive(Clone, Debug)]
+pub struct Named<T>(pub T);
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Named<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(NamedVisitor(PhantomData)).map(Named)
+    }
+}
+
+struct NamedVisitor<T>(PhantomData<T>);
+
+impl<'de, T: DeserializeOwned> Visitor<'de> for NamedVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a name, or a table { name = { ... } }")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, name: &str) -> Result<T, E> {
+        let no_parameters = BTreeMap::<String, f64>::new();
+        let table = MapDeserializer::new(std::iter::once((name, no_parameters)));
+        T::deserialize(MapAccessDeserializer::new(table))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map))
+    }
+}
+
+/// One table `[x]`, or several `[[x]]`.
+#[derive(Clone, Debug)]
+pub struct Tables<T>(pub Vec<T>);
+
+impl<'de, T: DeserializeOwned> Deserialize<'de> for Tables<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(TablesVisitor(PhantomData)).map(Tables)
+    }
+}
+
+struct TablesVisitor<T>(PhantomData<T>);
+
+impl<'de, T: DeserializeOwned> Visitor<'de> for TablesVisitor<T> {
+    type Value = Vec<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table, or an array of tables")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Vec<T>, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map)).map(|table| vec![table])
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<T>, A::Error> {
+        let mut tables = Vec::new();
+        while let Some(table) = seq.next_element()? {
+            tables.push(table);
+        }
+        Ok(tables)
+    }
+}
+
+/// A number, or a list of numbers to sweep over.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep(pub Vec<f64>);
+
+/// A number, or one for each of red, green and blue.
+struct PerChannel(Rgb);
+
+impl<'de> Deserialize<'de> for Sweep {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let values = deserializer.deserialize_any(NumbersVisitor("a number, or a list of numbers to sweep"))?;
+        if values.is_empty() {
+            return Err(D::Error::custom("an empty list leaves nothing to run; give at least one number"));
+        }
+        Ok(Sweep(values))
+    }
+}
+
+impl<'de> Deserialize<'de> for PerChannel {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expected = "a number, or three numbers [red, green, blue]";
+        match deserializer.deserialize_any(NumbersVisitor(expected))?[..] {
+            [v] => Ok(PerChannel(Rgb::splat(v))),
+            [r, g, b] => Ok(PerChannel(Rgb::new(r, g, b))),
+            ref other => Err(D::Error::custom(format!("{} numbers; expected {expected}", other.len()))),
+        }
+    }
+}
+
+struct NumbersVisitor(&'static str);
+
+impl<'de> Visitor<'de> for NumbersVisitor {
+    type Value = Vec<f64>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0)
+    }
+
+    fn visit_f64<E>(self, v: f64) -> Result<Vec<f64>, E> {
+        Ok(vec![v])
+    }
+
+    fn visit_i64<E>(self, v: i64) -> Result<Vec<f64>, E> {
+        Ok(vec![v as f64])
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<f64>, A::Error> {
+        let mut values = Vec::new();
+        while let Some(v) = seq.next_element::<f64>()? {
+            values.push(v);
+        }
+        Ok(values)
+    }
+}
+
+fn check<E: serde::de::Error>(holds: bool, value: impl fmt::Display, wanted: &str) -> Result<(), E> {
+    if holds { Ok(()) } else { Err(E::custom(format!("{value} is out of range: {wanted}"))) }
+}
+
+/// Albedo: each channel in [0, 1].
+pub fn albedo<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
+    let rgb = PerChannel::deserialize(d)?.0;
+    let wanted = "an albedo lies in [0, 1]; more would create energy";
+    rgb.to_array().iter().try_for_each(|&v| check((0.0..=1.0).contains(&v), v, wanted))?;
+    Ok(rgb)
+}
+
+/// Radiance [W m^-2 sr^-1]: each channel finite and not negative.
+pub fn radiance<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
+    let rgb = PerChannel::deserialize(d)?.0;
+    let wanted = "emitted radiance is finite and not negative";
+    rgb.to_array().iter().try_for_each(|&v| check(v.is_finite() && v >= 0.0, v, wanted))?;
+    Ok(rgb)
+}
+
+/// Survival or splitting: q > 0, finite.
+pub fn survival<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
+    let wanted = "q is the expected number of continuations, a finite number above 0 \
+                  (at 0 nothing survives that could make up for the rest)";
+    swept(d, wanted, |v| v > 0.0 && v.is_finite())
+}
+
+/// Whole numbers from 0, to sweep over.
+pub fn counts<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
+    swept(d, "a whole number from 0 to 1000", |v| v.fract() == 0.0 && (0.0..=1000.0).contains(&v))
+}
+
+/// Whole numbers from 1, to sweep over.
+pub fn positive_counts<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
+    swept(d, "a whole number from 1 to 1000", |v| v.fract() == 0.0 && (1.0..=1000.0).contains(&v))
+}
+
+/// Fractions of an area, to sweep over: inside (0, 1).
+pub fn fractions<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
+    swept(d, "a fraction of the sphere's area lies inside (0, 1)", |v| v > 0.0 && v < 1.0)
+}
+
+fn swept<'de, D: Deserializer<'de>>(
+    d: D,
+    wanted: &str,
+    holds: impl Fn(f64) -> bool,
+) -> Result<Sweep, D::Error> {
+    let sweep = Sweep::deserialize(d)?;
+    sweep.0.iter().try_for_each(|&v| check(holds(v), v, wanted))?;
+    Ok(sweep)
+}
+
+/// A probability or margin strictly inside (0, 1).
+pub fn inside_unit<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let v = f64::deserialize(d)?;
+    check(v > 0.0 && v < 1.0, v, "it lies inside (0, 1)")?;
+    Ok(v)
+}
+
+/// A probability in (0, 1].
+pub fn probability<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let v = f64::deserialize(d)?;
+    check(v > 0.0 && v <= 1.0, v, "it lies in (0, 1]")?;
+    Ok(v)
+}
+
+/// A length: finite and positive.
+pub fn length<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let v = f64::deserialize(d)?;
+    check(v > 0.0 && v.is_finite(), v, "a length is finite and positive")?;
+    Ok(v)
+}
+
+/// A number of samples: at least 1.
+pub fn samples<'de, D: Deserializer<'de>>(d: D) -> Result<u64, D::Error> {
+    let v = i64::deserialize(d)?;
+    check(v >= 1, v, "at least 1 sample is needed")?;
+    Ok(v as u64)
+}
+
+/// As [`samples`], where the key may be absent.
+pub fn optional_samples<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u64>, D::Error> {
+    samples(d).map(Some)
+}
+
+/// Pixels along an image's edge: 1 to 4096.
+pub fn resolution<'de, D: Deserializer<'de>>(d: D) -> Result<u32, D::Error> {
+    let v = i64::deserialize(d)?;
+    check((1..=4096).contains(&v), v, "a resolution lies in 1 to 4096 pixels")?;
+    Ok(v as u32)
+}
+
+/// A point or vector: three finite numbers.
+pub fn vector<'de, D: Deserializer<'de>>(d: D) -> Result<glam::DVec3, D::Error> {
+    let v = <[f64; 3]>::deserialize(d)?;
+    v.iter().try_for_each(|&x| check(x.is_finite(), x, "coordinates are finite"))?;
+    Ok(v.into())
+}
+
+/// A direction: three finite numbers, not all zero; normalized here.
+pub fn direction<'de, D: Deserializer<'de>>(d: D) -> Result<glam::DVec3, D::Error> {
+    let v = vector(d)?;
+    v.try_normalize().ok_or_else(|| D::Error::custom("a direction must not be the zero vector"))
+}
+
+/// A field of view [degrees].
+pub fn field_of_view<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let v = f64::deserialize(d)?;
+    check(v > 0.0 && v < 180.0, v, "a field of view lies inside (0, 180) degrees")?;
+    Ok(v)
+}

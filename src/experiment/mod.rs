@@ -1,0 +1,20 @@
+//! From an experiment file to verdicts: spec, plan, blocks, cells, rows.
+
+mod agree;
+pub mod cell;
+pub mod choices;
+pub mod error;
+mod grid;
+pub mod input;
+pub mod plan;
+pub mod row;
+pub mod run;
+pub mod spec;
+pub mod verdict;
+
+pub use cell::Cell;
+pub use error::Error;
+pub use plan::{CellPlan, Overrides, Plan};
+pub use row::{Estimand, Row};
+pub use run::{run_cell, sample};
+pub use spec::Spec;

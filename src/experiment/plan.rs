@@ -1,0 +1,206 @@
+//! The resolved experiment: every cell with its samples and what it will cost.
+
+use super::error::Error;
+use super::grid;
+use super::spec::{self, Claim, Limits, Spec};
+use crate::estimator::{BINS, Estimate, Estimator, MAX_RAYS, Property};
+use crate::sampling::Address;
+use crate::scene::library::SceneKind;
+use crate::stats::student;
+use crate::truth::{ClosedForm, Counted};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// One point of the grid.
+#[derive(Clone, Debug)]
+pub struct CellPlan {
+    /// The scene and its parameters.
+    pub scene: SceneKind,
+    /// What the scene is called.
+    pub scene_label: String,
+    /// The estimator with its termination rule.
+    pub estimator: Estimator,
+    /// What the estimator is called.
+    pub estimator_label: String,
+    /// What the termination rule is called.
+    pub roulette_label: String,
+    /// Numeric parameters by name, swept or not.
+    pub params: BTreeMap<String, f64>,
+    /// Realizations.
+    pub samples: u64,
+    /// Realizations a block.
+    pub block: u64,
+    /// Pixels of one realization.
+    pub pixels: u64,
+    /// Expected rays a realization: by theory, or an upper bound.
+    pub rays: f64,
+    /// Where its random streams live.
+    pub address: Address,
+}
+
+impl CellPlan {
+    /// Whether its mean is meant to be the right value.
+    pub fn is_unbiased(&self) -> bool {
+        self.estimator.property() == Property::Unbiased
+    }
+
+    /// Expected rays of the whole cell.
+    pub fn total_rays(&self) -> f64 {
+        self.rays * self.samples as f64
+    }
+}
+
+/// The resolved experiment.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The experiment's name.
+    pub name: String,
+    /// What the file says, with the command line's changes.
+    pub spec: Spec,
+    /// All cells.
+    pub cells: Vec<CellPlan>,
+    /// Names of the swept parameters.
+    pub swept: Vec<String>,
+}
+
+/// What the command line changes.
+#[derive(Clone, Debug, Default)]
+pub struct Overrides {
+    /// Another seed.
+    pub seed: Option<u64>,
+    /// Other realizations for every cell.
+    pub samples: Option<u64>,
+    /// Only cells whose label contains this text.
+    pub filter: Option<String>,
+    /// A hundredth of the samples.
+    pub quick: bool,
+    /// Run cells that are out of proportion.
+    pub force: bool,
+}
+
+/// More rays than this in one cell are out of proportion: hours on one core.
+const MAX_CELL_RAYS: f64 = 1e11;
+
+/// Rays a second and core that predicted times assume.
+pub const RAYS_PER_SECOND: f64 = 1e7;
+
+/// Paths a block, about.
+const BLOCK_PATHS: u64 = 4096;
+
+impl Plan {
+    /// Resolves the experiment `name` from the text of its file.
+    pub fn new(name: &str, file: &Path, source: &str, overrides: &Overrides) -> Result<Self, Error> {
+        let mut spec = spec::parse(file, source)?;
+        spec.seed = overrides.seed.unwrap_or(spec.seed);
+        let (cells, swept) = grid::resolve(&spec, file, source)?;
+        let mut plan = Plan { name: name.to_owned(), spec, cells, swept };
+        plan.distinct()?;
+        if let Some(text) = &overrides.filter {
+            let swept = &plan.swept;
+            plan.cells.retain(|cell| label(cell, swept).contains(text.as_str()));
+            if plan.cells.is_empty() {
+                return Err(Error::Refused(format!("no cell of {name} has `{text}` in its label")));
+            }
+        }
+        plan.allot(overrides);
+        plan.cells.iter().try_for_each(|cell| plan.proportionate(cell, overrides.force))?;
+        Ok(plan)
+    }
+
+    /// What the terminal and the page call a cell.
+    pub fn label(&self, cell: &CellPlan) -> String {
+        label(cell, &self.swept)
+    }
+
+    /// A cell's termination rule and swept parameters.
+    pub fn rule_label(&self, cell: &CellPlan) -> String {
+        rule_label(cell, &self.swept)
+    }
+
+    /// Two cells of one name would be one row twice.
+    fn distinct(&self) -> Result<(), Error> {
+        let mut seen = std::collections::BTreeSet::new();
+        for cell in &self.cells {
+            let label = self.label(cell);
+            if !seen.insert(label.clone()) {
+                return Err(Error::Refused(format!(
+                    "{}: two cells are both called `{label}`; give one of the scenes another `name`",
+                    self.name
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Fixes each cell's samples and blocks.
+    fn allot(&mut self, overrides: &Overrides) {
+        let limits = self.spec.claim.iter().find_map(|claim| match claim {
+            Claim::Unbiased(limits) => Some(*limits),
+            _ => None,
+        });
+        let questions = self.cells.len() * 3 * (BINS + 1);
+        for cell in &mut self.cells {
+            let (width, height) = cell.scene.build().sensor.resolution();
+            cell.pixels = u64::from(width) * u64::from(height);
+            // two passes at least: their difference shows each pixel's variance
+            cell.block = (BLOCK_PATHS / cell.pixels).max(2);
+            match (overrides.samples, self.spec.max_samples, limits) {
+                (Some(samples), _, _) => cell.samples = samples,
+                (None, Some(most), Some(limits)) if most > cell.samples => {
+                    let wanted = wanted_samples(cell, limits, questions);
+                    cell.samples = wanted.map_or(cell.samples, |n| n.clamp(cell.samples, most));
+                }
+                _ => {}
+            }
+            if overrides.quick {
+                cell.samples = (cell.samples / 100).max(2);
+            }
+            // whole blocks only, and two of them at least, or there is no standard error
+            cell.samples = cell.samples.div_ceil(cell.block).max(2) * cell.block;
+        }
+    }
+
+    fn proportionate(&self, cell: &CellPlan, force: bool) -> Result<(), Error> {
+        let label = self.label(cell);
+        let one = cell.rays / cell.pixels as f64;
+        if one > MAX_RAYS as f64 {
+            return Err(Error::Refused(format!(
+                "{label}: one sample would trace {one:.2e} rays, and a walk is cut at {MAX_RAYS}; \
+                 lower n or depth"
+            )));
+        }
+        let total = cell.total_rays();
+        if total > MAX_CELL_RAYS && !force {
+            let hours = total / RAYS_PER_SECOND / 3600.0;
+            return Err(Error::Refused(format!(
+                "{label}: {total:.2e} rays, about {hours:.0} hours on one core; lower n, depth or samples, \
+                 or add --force to run it all the same"
+            )));
+        }
+        Ok(())
+    }
+}
+
+fn label(cell: &CellPlan, swept: &[String]) -> String {
+    format!("{} {} {}", cell.scene_label, cell.estimator_label, rule_label(cell, swept))
+}
+
+fn rule_label(cell: &CellPlan, swept: &[String]) -> String {
+    let swept = cell.params.iter().filter(|(name, _)| swept.contains(name));
+    let params: String = swept.map(|(name, value)| format!(" {name}={value}")).collect();
+    format!("{}{params}", cell.roulette_label)
+}
+
+/// Realizations after which an unbiased cell is shown to be within the margin in each channel, by theory's variance:
+/// n = ((z_alpha + z_beta) sigma / (margin x mean))², with alpha shared among `questions`.
+fn wanted_samples(cell: &CellPlan, limits: Limits, questions: usize) -> Option<u64> {
+    const Z_POWER: f64 = 2.0; // 97.7 %
+    let closed = ClosedForm::of(&cell.scene, &cell.estimator)?;
+    let z = student::quantile(1.0 - limits.alpha / questions as f64, f64::INFINITY) + Z_POWER;
+    let needed = |channel| {
+        let variance = closed.central(channel, Counted::All, 2).value()?;
+        let margin = limits.margin * closed.expected(channel, Counted::All);
+        (margin > 0.0).then(|| z * z * variance / (margin * margin))
+    };
+    (0..3).filter_map(needed).reduce(f64::max).map(|n| n.ceil() as u64)
+}

@@ -1,0 +1,141 @@
+//! One row of `results.csv`: one estimand of one cell in one channel.
+
+use crate::stats::Verdict;
+use std::fmt;
+
+/// What a row measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Estimand {
+    /// Mean of a realization, all bounces.
+    Mean,
+    /// Mean of what one bounce adds; the last bin holds all later ones.
+    Bounce(usize),
+    /// Mean over one of the image's tiles, counted row by row from the top left.
+    Tile(usize),
+    /// Variance of a realization.
+    Variance,
+    /// Rays a realization.
+    Cost,
+    /// Variance of a pixel's sample, averaged over the image.
+    PixelVariance,
+    /// Median over the image of the variance of a pixel's sample.
+    MedianPixelVariance,
+    /// Share of realizations that are zero in every channel.
+    Zeros,
+    /// Mean, compared with that of another cell.
+    Agree,
+    /// What one bounce adds, compared with another cell.
+    AgreeBounce(usize),
+}
+
+impl fmt::Display for Estimand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Estimand::Mean => "mean",
+            Estimand::Bounce(_) => "bounce",
+            Estimand::Tile(_) => "tile",
+            Estimand::Variance => "variance",
+            Estimand::Cost => "cost",
+            Estimand::PixelVariance => "pixel_variance",
+            Estimand::MedianPixelVariance => "median_pixel_variance",
+            Estimand::Zeros => "zeros",
+            Estimand::Agree => "agree",
+            Estimand::AgreeBounce(_) => "agree_bounce",
+        })
+    }
+}
+
+impl Estimand {
+    /// The bounce or tile that it is about.
+    pub fn index(self) -> Option<usize> {
+        match self {
+            Estimand::Bounce(i) | Estimand::AgreeBounce(i) | Estimand::Tile(i) => Some(i),
+            _ => None,
+        }
+    }
+}
+
+/// A row; what does not apply is `None`.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Index of the cell in the plan.
+    pub cell: usize,
+    /// What is measured.
+    pub estimand: Estimand,
+    /// 0, 1, 2 for red, green, blue; `None` if it has no colour.
+    pub channel: Option<usize>,
+    /// Realizations.
+    pub samples: u64,
+    /// The measured value.
+    pub mean: f64,
+    /// Its standard error.
+    pub std_error: Option<f64>,
+    /// Variance of one realization.
+    pub variance: Option<f64>,
+    /// The right value.
+    pub truth: Option<f64>,
+    /// Its standard error; 0 for a closed form.
+    pub truth_error: Option<f64>,
+    /// Where the truth comes from.
+    pub source: &'static str,
+    /// What theory expects of this estimator, less the truth.
+    pub expected_bias: Option<f64>,
+    /// The measured value less the truth.
+    pub bias: Option<f64>,
+    /// Simultaneous interval of the bias.
+    pub ci: Option<(f64, f64)>,
+    /// Probability, were all well, of a deviation from the expected bias at least as large.
+    pub p_value: Option<f64>,
+    /// Smallest deviation that would have been found with 90 % power.
+    pub mde: Option<f64>,
+    /// What is concluded; `None` if nothing was claimed.
+    pub verdict: Option<Verdict>,
+    /// Expected number of rays a realization, as measured.
+    pub rays: Option<f64>,
+    /// 1 / (variance x rays).
+    pub efficiency: Option<f64>,
+    /// Its standard error.
+    pub efficiency_error: Option<f64>,
+    /// Why there is no verdict or no number, or what else to know.
+    pub note: String,
+}
+
+impl Row {
+    /// A row with nothing but its value.
+    pub fn new(cell: usize, estimand: Estimand, channel: Option<usize>, samples: u64, mean: f64) -> Self {
+        Row {
+            cell,
+            estimand,
+            channel,
+            samples,
+            mean,
+            std_error: None,
+            variance: None,
+            truth: None,
+            truth_error: None,
+            source: "",
+            expected_bias: None,
+            bias: None,
+            ci: None,
+            p_value: None,
+            mde: None,
+            verdict: None,
+            rays: None,
+            efficiency: None,
+            efficiency_error: None,
+            note: String::new(),
+        }
+    }
+
+    /// States the right value and what this estimator is expected to make of it.
+    pub fn against(&mut self, truth: f64, truth_error: f64, expected: Option<f64>, source: &'static str) {
+        self.truth = Some(truth);
+        self.truth_error = Some(truth_error);
+        self.source = source;
+        self.bias = Some(self.mean - truth);
+        self.expected_bias = expected.map(|expected| expected - truth);
+    }
+}
+
+/// Letters of the channels.
+pub const CHANNELS: [&str; 3] = ["R", "G", "B"];

@@ -1,0 +1,79 @@
+//! From plan to cells: blocks of realizations are pure functions of (plan, cell, block), run in parallel and merged in
+//! block order, serially, so that results have the same bits for any number of threads.
+
+use super::cell::{Block, Cell};
+use super::plan::CellPlan;
+use crate::estimator::{Ctx, Estimate, Tally};
+use crate::sampling::Address;
+use crate::scene::Scene;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Paths between two looks at the stop flag; also bounds how many blocks are held at once.
+const WAVE_PATHS: u64 = 1 << 18;
+
+/// Runs one cell on the current thread pool, `None` if `stop` was raised before its end.
+/// `progress` is told of the rays traced by each finished wave.
+pub fn run_cell(plan: &CellPlan, stop: &AtomicBool, progress: &dyn Fn(f64)) -> Option<Cell> {
+    let scene = plan.scene.build();
+    let blocks = plan.samples / plan.block;
+    let wave = (WAVE_PATHS / (plan.block * plan.pixels)).max(8);
+    let mut cell = Cell::default();
+    let mut first = 0;
+    while first < blocks {
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        let last = (first + wave).min(blocks);
+        let run = |block: u64| {
+            let realizations = block * plan.block..(block + 1) * plan.block;
+            block_of(&scene, &plan.estimator, &plan.address, realizations)
+        };
+        let finished: Vec<Block> = (first..last).into_par_iter().map(run).collect();
+        finished.iter().for_each(|block| cell.merge(block));
+        progress(finished.iter().map(|block| block.tally.rays as f64).sum());
+        first = last;
+    }
+    cell.finish();
+    Some(cell)
+}
+
+/// Samples an estimator of one's own: `samples` realizations in blocks of `block`, on the current thread pool.
+pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, samples: u64, block: u64) -> Cell {
+    let blocks: Vec<Block> = (0..samples / block)
+        .into_par_iter()
+        .map(|b| block_of(scene, estimator, address, b * block..(b + 1) * block))
+        .collect();
+    let mut cell = Cell::default();
+    blocks.iter().for_each(|block| cell.merge(block));
+    cell.finish();
+    cell
+}
+
+/// One block of realizations.
+pub fn block_of(
+    scene: &Scene,
+    estimator: &impl Estimate,
+    address: &Address,
+    realizations: Range<u64>,
+) -> Block {
+    let (width, height) = scene.sensor.resolution();
+    let mut block = Block::new(width, height);
+    let mut tally = Tally::default();
+    for realization in realizations {
+        let rays_before = tally.rays;
+        for y in 0..height {
+            for x in 0..width {
+                let pixel = u64::from(y) * u64::from(width) + u64::from(x);
+                let mut stream = address.stream(realization, pixel);
+                let (ray, response) = scene.sensor.ray((x, y), &mut stream);
+                estimator.estimate(ray, &mut Ctx::new(scene, stream, &mut tally, response));
+                block.pixel(pixel as usize, tally.value);
+            }
+        }
+        block.realization((tally.rays - rays_before) as f64);
+    }
+    block.close(tally);
+    block
+}

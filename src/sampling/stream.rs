@@ -1,0 +1,79 @@
+//! Keyed random streams: a stream's address is its content, so a result does not depend on threads, order or neighbours.
+//!
+//! Generator: PCG64 MCG [O'Neill 2014]. Its states 2k and 2k+1 are one and the same generator, so small counters
+//! are never passed raw: a state is a 128-bit mix of (key, realization, pixel).
+
+use rand::Rng;
+use rand_pcg::Pcg64Mcg;
+use sha2::{Digest, Sha256};
+
+/// Where a family of streams lives: a hash of everything that defines what is sampled (seed, scene, estimator, purpose).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Address {
+    key: [u64; 2],
+}
+
+impl Address {
+    /// The address of the given parts. Parts are length-prefixed: `["ab", "c"]` and `["a", "bc"]` differ.
+    pub fn of(parts: &[&str]) -> Self {
+        let mut hash = Sha256::new();
+        for part in parts {
+            hash.update((part.len() as u64).to_le_bytes());
+            hash.update(part.as_bytes());
+        }
+        let digest = hash.finalize();
+        let word = |at: usize| {
+            (0..8).fold(0u64, |word, byte| {
+                word | (u64::from(digest[at + byte]) << (8 * byte))
+            })
+        };
+        Address {
+            key: [word(0), word(8)],
+        }
+    }
+
+    /// The stream of one pixel in one realization (`pixel` = 0 for a probe).
+    ///
+    /// (realization, pixel) -> state is injective up to the lowest bit, which the generator ignores.
+    #[inline]
+    pub fn stream(&self, realization: u64, pixel: u64) -> Stream {
+        let a = mix(self.key[0].wrapping_add(realization.wrapping_mul(GOLDEN)));
+        let low = mix((self.key[1] ^ a).wrapping_add(pixel.wrapping_mul(GOLDEN)));
+        let high = mix(a ^ low);
+        Stream {
+            rng: Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low)),
+        }
+    }
+}
+
+/// 2^64 / golden ratio, odd: the Weyl increment of SplitMix64 [Steele, Lea & Flood 2014].
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The finalizer of SplitMix64 (Stafford's variant 13): a bijection of 64-bit words.
+#[inline]
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// A sequence of independent uniform numbers in [0, 1).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stream {
+    rng: Pcg64Mcg,
+}
+
+impl Stream {
+    /// A multiple of 2^-53 in [0, 1); 1 is never returned.
+    #[inline]
+    pub fn u1(&mut self) -> f64 {
+        const SCALE: f64 = 1.0 / (1u64 << 53) as f64;
+        (self.rng.next_u64() >> 11) as f64 * SCALE
+    }
+
+    /// A point of the unit square.
+    #[inline]
+    pub fn u2(&mut self) -> (f64, f64) {
+        (self.u1(), self.u1())
+    }
+}

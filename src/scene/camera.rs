@@ -1,0 +1,105 @@
+//! Sensors: what one realization measures, pixel by pixel.
+
+use super::Ray;
+use super::geometry::NOWHERE;
+use crate::sampling::Stream;
+use crate::sampling::warp::{Frame, cosine_hemisphere};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sensor {
+    /// The radiance that arrives along one ray [W m^-2 sr^-1].
+    Probe {
+        /// Where the eye is.
+        origin: DVec3,
+        /// Unit direction in which it looks.
+        direction: DVec3,
+    },
+    /// The irradiance on a small plate [W m^-2].
+    Irradiance {
+        /// Where the plate is.
+        point: DVec3,
+        /// Its unit normal.
+        normal: DVec3,
+        /// The surface on which it lies, if on any.
+        #[serde(default)]
+        on: Option<u32>,
+    },
+    /// Pixel means of the radiance through a pinhole, box filter [W m^-2 sr^-1].
+    Camera(Pinhole),
+}
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pinhole {
+    /// Where the eye is.
+    pub origin: DVec3,
+    /// Unit viewing direction.
+    pub forward: DVec3,
+    /// From the image's centre to the middle of its right edge, at unit distance.
+    pub right: DVec3,
+    /// From the image's centre to the middle of its top edge, at unit distance.
+    pub up: DVec3,
+    /// Pixels from left to right.
+    pub width: u32,
+    /// Pixels from top to bottom.
+    pub height: u32,
+}
+
+impl Pinhole {
+    /// A camera at `origin` looking along `direction`, with the full vertical field of view [degrees].
+    pub fn new(
+        origin: DVec3,
+        direction: DVec3,
+        up: DVec3,
+        fov_degrees: f64,
+        (width, height): (u32, u32),
+    ) -> Self {
+        let forward = direction.normalize();
+        let right = forward.cross(up).normalize();
+        let half = libm::tan(0.5 * fov_degrees * PI / 180.0);
+        Pinhole {
+            origin,
+            forward,
+            right: right * (half * f64::from(width) / f64::from(height)),
+            up: right.cross(forward) * half,
+            width,
+            height,
+        }
+    }
+}
+
+impl Sensor {
+    /// Width and height in pixels; a probe has one pixel.
+    pub fn resolution(&self) -> (u32, u32) {
+        match self {
+            Sensor::Camera(c) => (c.width, c.height),
+            _ => (1, 1),
+        }
+    }
+
+    /// A ray for pixel `(x, y)` (from the top left) and the factor that turns its radiance into the measured quantity.
+    #[inline]
+    pub fn ray(&self, (x, y): (u32, u32), stream: &mut Stream) -> (Ray, f64) {
+        match self {
+            Sensor::Probe { origin, direction } => {
+                (Ray { o: *origin, d: *direction, from: NOWHERE }, 1.0)
+            }
+            Sensor::Irradiance { point, normal, on } => {
+                let d = Frame::around(*normal).to_world(cosine_hemisphere(stream.u2()));
+                (Ray { o: *point, d, from: on.unwrap_or(NOWHERE) }, PI) // cos / pdf = π
+            }
+            Sensor::Camera(c) => {
+                let (u, v) = stream.u2();
+                let sx = 2.0 * (f64::from(x) + u) / f64::from(c.width) - 1.0;
+                let sy = 1.0 - 2.0 * (f64::from(y) + v) / f64::from(c.height);
+                let d = (c.forward + sx * c.right + sy * c.up).normalize();
+                (Ray { o: c.origin, d, from: NOWHERE }, 1.0)
+            }
+        }
+    }
+}

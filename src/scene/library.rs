@@ -1,0 +1,177 @@
+//! Named scenes. Each is off-centre, of a radius other than 1 and without a privileged axis on purpose:
+//! symmetry and unit sizes hide mistakes.
+
+use super::cornell::cornell;
+use super::geometry::{Rectangle, SpherePatch};
+use super::{Material, Rgb, Scene, Sensor, Shape, Surface};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// A scene and its parameters, all of them resolved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SceneKind {
+    /// A closed sphere of one material, seen from inside: radiance le / (1 - albedo) everywhere.
+    Furnace {
+        /// Albedo per channel, in [0, 1).
+        albedo: Rgb,
+        /// Emitted radiance [W m^-2 sr^-1].
+        emission: Rgb,
+        /// What is measured.
+        view: View,
+    },
+    /// The same closed form in a closed box whose three edges differ.
+    FurnaceBox {
+        /// Albedo per channel, in [0, 1).
+        albedo: Rgb,
+        /// Emitted radiance [W m^-2 sr^-1].
+        emission: Rgb,
+        /// What is measured.
+        view: View,
+    },
+    /// A sphere of patches, seen from inside.
+    IntegratingSphere {
+        /// Bands of one sphere from one pole to the other; their fractions sum to 1.
+        patches: Vec<Patch>,
+        /// Which patch a probe looks at.
+        looks_at: usize,
+        /// What is measured.
+        view: View,
+    },
+    /// The Cornell box with its two blocks.
+    CornellBox {
+        /// Pixels along each edge of the image.
+        resolution: u32,
+    },
+    /// The Cornell box without blocks.
+    CornellEmpty {
+        /// Pixels along each edge of the image.
+        resolution: u32,
+    },
+    /// Written out primitive by primitive in an experiment file.
+    Custom {
+        /// The surfaces.
+        primitives: Vec<Primitive>,
+        /// What is measured.
+        sensor: Sensor,
+    },
+}
+
+/// How a closed-form scene is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum View {
+    /// Radiance along one ray.
+    #[default]
+    Probe,
+    /// Irradiance on a small plate.
+    Irradiance,
+}
+
+/// A part of an integrating sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Patch {
+    /// Fraction of the sphere's area, in (0, 1].
+    pub fraction: f64,
+    /// Albedo per channel.
+    pub albedo: Rgb,
+    /// Emitted radiance [W m^-2 sr^-1].
+    pub emission: Rgb,
+}
+
+/// One primitive of a scene that is written out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Primitive {
+    /// Its shape; the front is where its normal points.
+    pub shape: Shape,
+    /// Albedo per channel.
+    pub albedo: Rgb,
+    /// Emitted radiance [W m^-2 sr^-1].
+    pub emission: Rgb,
+}
+
+const CENTER: DVec3 = DVec3::new(0.3, -0.2, 0.5);
+const RADIUS: f64 = 1.3;
+
+impl SceneKind {
+    /// Builds the scene.
+    pub fn build(&self) -> Scene {
+        match self {
+            SceneKind::Furnace { albedo, emission, view } => furnace(*albedo, *emission, *view),
+            SceneKind::FurnaceBox { albedo, emission, view } => {
+                furnace_box(*albedo, *emission, *view)
+            }
+            SceneKind::IntegratingSphere { patches, looks_at, view } => {
+                integrating_sphere(patches, *looks_at, *view)
+            }
+            SceneKind::CornellBox { resolution } => cornell(true, *resolution),
+            SceneKind::CornellEmpty { resolution } => cornell(false, *resolution),
+            SceneKind::Custom { primitives, sensor } => custom(primitives, *sensor),
+        }
+    }
+}
+
+/// A direction that no coordinate axis shares.
+fn oblique() -> DVec3 {
+    DVec3::new(0.36, 0.48, 0.8)
+}
+
+fn furnace(albedo: Rgb, emission: Rgb, view: View) -> Scene {
+    let whole = Patch { fraction: 1.0, albedo, emission };
+    integrating_sphere(&[whole], 0, view)
+}
+
+fn furnace_box(albedo: Rgb, le: Rgb, view: View) -> Scene {
+    let half = DVec3::new(0.7, 1.1, 1.9);
+    let material = Material { albedo, le };
+    let wall = |axis: usize, sign: f64| {
+        let inward = -sign * DVec3::AXES[axis];
+        let half_u = DVec3::AXES[(axis + 1) % 3] * half[(axis + 1) % 3];
+        let half_v = inward.cross(half_u).normalize() * half[(axis + 2) % 3];
+        let center = CENTER + sign * half[axis] * DVec3::AXES[axis];
+        Surface { shape: Shape::Rectangle(Rectangle { center, half_u, half_v }), material }
+    };
+    let walls = (0..3).flat_map(|axis| [wall(axis, 1.0), wall(axis, -1.0)]).collect();
+    let (point, direction) = (CENTER + 0.3 * half, -oblique());
+    let sensor = match view {
+        View::Probe => Sensor::Probe { origin: point, direction },
+        View::Irradiance => Sensor::Irradiance { point, normal: direction, on: None },
+    };
+    Scene::new(walls, sensor)
+}
+
+fn integrating_sphere(patches: &[Patch], looks_at: usize, view: View) -> Scene {
+    let mut low = 1.0;
+    let mut surfaces = Vec::new();
+    let mut target = DVec3::ZERO;
+    for (i, patch) in patches.iter().enumerate() {
+        let high = low;
+        low = if i + 1 == patches.len() { -1.0 } else { high - 2.0 * patch.fraction };
+        let (center, radius, axis) = (CENTER, RADIUS, oblique());
+        let band = SpherePatch { center, radius, axis, low, high, inward: true };
+        if i == looks_at {
+            target = Shape::Sphere(band).sample_area((0.5, 0.3));
+        }
+        surfaces.push(Surface {
+            shape: Shape::Sphere(band),
+            material: Material { albedo: patch.albedo, le: patch.emission },
+        });
+    }
+    let eye = CENTER + DVec3::new(0.2, 0.1, -0.3);
+    let sensor = match view {
+        View::Probe => Sensor::Probe { origin: eye, direction: (target - eye).normalize() },
+        View::Irradiance => {
+            let normal = (CENTER - target).normalize();
+            Sensor::Irradiance { point: target, normal, on: Some(looks_at as u32) }
+        }
+    };
+    Scene::new(surfaces, sensor)
+}
+
+fn custom(primitives: &[Primitive], sensor: Sensor) -> Scene {
+    let surface = |p: &Primitive| Surface {
+        shape: p.shape,
+        material: Material { albedo: p.albedo, le: p.emission },
+    };
+    Scene::new(primitives.iter().map(surface).collect(), sensor)
+}

@@ -1,0 +1,156 @@
+//! What is lit and what looks at it: surfaces, emitters and a sensor. Knows nothing of estimators.
+//!
+//! Every surface is one-sided: it reflects and emits on its front and is black from behind.
+//! There is no epsilon anywhere: a ray knows the surface that it leaves, and a flat surface cannot hit itself,
+//! while a sphere's second intersection follows from the first.
+
+pub mod bsdf;
+pub mod camera;
+mod cornell;
+pub mod geometry;
+pub mod lanes;
+pub mod library;
+pub mod light;
+pub mod solid_angle;
+
+pub use bsdf::{Directions, Material};
+pub use camera::Sensor;
+pub use geometry::{Ray, Shape};
+pub use light::{LightSample, LightSampling};
+
+use glam::DVec3;
+use lanes::RectangleLanes;
+use light::Lights;
+
+/// Red, green, blue: radiance [W m^-2 sr^-1], albedo or throughput, component by component.
+pub type Rgb = DVec3;
+
+/// A shape and what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Where it is; its front is the side its normal points to.
+    pub shape: Shape,
+    /// What its front reflects and emits.
+    pub material: Material,
+}
+
+/// The front of a surface, met by a ray.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    /// The point [scene units].
+    pub p: DVec3,
+    /// Unit normal on the front side.
+    pub n: DVec3,
+    /// Albedo and emission at the point.
+    pub material: Material,
+    /// Which surface was hit.
+    pub surface: u32,
+}
+
+impl Hit {
+    /// The ray that leaves this point in the unit direction `wi`.
+    #[inline]
+    pub fn spawn(&self, wi: DVec3) -> Ray {
+        Ray {
+            o: self.p,
+            d: wi,
+            from: self.surface,
+        }
+    }
+}
+
+/// An immutable scene with its sensor.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    surfaces: Vec<Surface>,
+    rectangles: RectangleLanes,
+    others: Vec<u32>,
+    lights: Lights,
+    /// What is measured.
+    pub sensor: Sensor,
+}
+
+impl Scene {
+    /// A scene of the given surfaces, in the given order.
+    pub fn new(surfaces: Vec<Surface>, sensor: Sensor) -> Self {
+        let lights = Lights::new(&surfaces);
+        let rectangles = RectangleLanes::new(&surfaces);
+        let is_other = |s: &Surface| !matches!(s.shape, Shape::Rectangle(_));
+        let others = (0u32..)
+            .zip(&surfaces)
+            .filter(|(_, s)| is_other(s))
+            .map(|(id, _)| id)
+            .collect();
+        Scene {
+            surfaces,
+            rectangles,
+            others,
+            lights,
+            sensor,
+        }
+    }
+
+    /// The nearest surface along the ray, if it shows its front: a back is black, as is the void around an open scene.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        let (mut t, mut id) = self.rectangles.nearest(ray);
+        for &other in &self.others {
+            let candidate = self.surfaces[other as usize].shape.intersect(ray, other, &self.surfaces);
+            if candidate < t {
+                (t, id) = (candidate, other);
+            }
+        }
+        if t == f64::INFINITY {
+            return None;
+        }
+        let surface = &self.surfaces[id as usize];
+        let (p, n) = surface.shape.at(ray.o + t * ray.d);
+        (n.dot(ray.d) < 0.0).then_some(Hit {
+            p,
+            n,
+            material: surface.material,
+            surface: id,
+        })
+    }
+
+    /// Whether nothing stands between the point `ray.o` on surface `ray.from` and `ray.o + ray.d` on surface `to`.
+    #[inline]
+    pub fn visible(&self, ray: &Ray, to: u32) -> bool {
+        !self.rectangles.blocks(ray, to)
+            && !self.others.iter().any(|&other| {
+                self.surfaces[other as usize].shape.blocks(ray, other, to, &self.surfaces)
+            })
+    }
+
+    /// A point on an emitter as seen from `p`, the emitter picked in proportion to its power.
+    /// `u` picks the light, `v` the point. `None` where the sampled point cannot send light to `p` (visibility aside).
+    #[inline]
+    pub fn sample_light(
+        &self,
+        how: LightSampling,
+        p: DVec3,
+        u: f64,
+        v: (f64, f64),
+    ) -> Option<LightSample> {
+        self.lights.sample(&self.surfaces, how, p, u, v)
+    }
+
+    /// The surfaces in their order.
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    /// How many emitters there are; with one there is nothing to pick.
+    #[inline]
+    pub fn light_count(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// The largest albedo of any surface and channel: bounds how slowly throughput can fall.
+    pub fn max_albedo(&self) -> f64 {
+        self.surfaces
+            .iter()
+            .map(|s| s.material.albedo.max_element())
+            .fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,255 @@
+//! What one question shows by itself, before its family is considered.
+
+use super::question::{Question, Verdict};
+use super::student::{one_sided_p, quantile, two_sided_p, upper_quantile, welch_df};
+
+/// Power at which detectable bias and missing samples are stated.
+pub(super) const POWER: f64 = 0.9;
+
+/// Rounding allowed, relative to the expected value, where theory says that
+/// there is no noise.
+const ROUNDING: f64 = 1e-12;
+
+/// Tests and rules applied to one question.
+pub(super) struct Evidence {
+    pub(super) p_different: f64,
+    pub(super) p_outside: f64,
+    pub(super) ci: (f64, f64),
+    pub(super) mde: f64,
+    /// Of the combined standard error.
+    pub(super) df: f64,
+    /// Verdict of a rule that is no test.
+    pub(super) settled: Option<(Verdict, String)>,
+}
+
+/// Applies the rules for missing noise, or else the tests at `level`.
+pub(super) fn weigh(q: &Question, level: f64) -> Evidence {
+    let rounding = ROUNDING * q.expected.abs().max(f64::MIN_POSITIVE);
+    if q.df < 1.0 || (q.expected_df < 1.0 && q.expected_std_error != 0.0) {
+        return nothing("fewer than two blocks");
+    }
+    if q.noise_free && q.std_error <= rounding && q.expected_std_error == 0.0 {
+        return compare_exactly(q, rounding);
+    }
+    // a spread of block means below the rounding of the mean is no variation
+    if !q.noise_free && q.std_error <= f64::EPSILON * q.mean.abs() {
+        return nothing("no variation was seen, so there is no interval");
+    }
+    let mut evidence = test(q, level);
+    if q.noise_free && q.std_error > rounding {
+        let se = q.std_error;
+        let reason = format!("noise-free in theory, but it varies: standard error {se:.3e}");
+        evidence.settled = Some((Verdict::Fail, reason));
+    }
+    evidence
+}
+
+/// No information: p-values of 1 are true of it and reject nothing.
+fn nothing(reason: &str) -> Evidence {
+    Evidence {
+        p_different: 1.0,
+        p_outside: 1.0,
+        ci: (f64::NEG_INFINITY, f64::INFINITY),
+        mde: f64::INFINITY,
+        df: 0.0,
+        settled: Some((Verdict::Inconclusive, reason.to_string())),
+    }
+}
+
+/// Theory and measurement without noise: a comparison instead of a test, the
+/// p-values of which are 0 or 1.
+fn compare_exactly(q: &Question, rounding: f64) -> Evidence {
+    let difference = q.mean - q.expected;
+    let different = difference.abs() > q.systematic + rounding;
+    let inside = difference.abs() + q.systematic < q.margin;
+    let rule = if different {
+        (
+            Verdict::Fail,
+            format!("noise-free, but off by {difference:.3e}"),
+        )
+    } else if inside || q.systematic == 0.0 {
+        (
+            Verdict::Pass,
+            "noise-free, and equal to rounding or the reference's error".to_string(),
+        )
+    } else {
+        (Verdict::Inconclusive, too_coarse(q))
+    };
+    Evidence {
+        p_different: if different { 0.0 } else { 1.0 },
+        p_outside: if inside { 0.0 } else { 1.0 },
+        ci: (difference - q.systematic, difference + q.systematic),
+        mde: q.systematic + rounding,
+        df: f64::INFINITY,
+        settled: Some(rule),
+    }
+}
+
+/// The t test for a difference and the two one-sided tests for equivalence.
+fn test(q: &Question, level: f64) -> Evidence {
+    let difference = q.mean - q.expected;
+    let distance = difference.abs();
+    let se = q.std_error.hypot(q.expected_std_error);
+    let df = welch_df(q.std_error, q.df, q.expected_std_error, q.expected_df);
+    let room = q.margin - q.systematic;
+    let t = upper_quantile(level / 2.0, df);
+    let half_width = t * se + q.systematic;
+    Evidence {
+        p_different: two_sided_p((distance - q.systematic).max(0.0) / se, df),
+        // of the two one-sided p-values the one towards the nearer margin
+        p_outside: if room > 0.0 {
+            one_sided_p((room - distance) / se, df)
+        } else {
+            1.0
+        },
+        ci: (difference - half_width, difference + half_width),
+        mde: (t + quantile(POWER, f64::INFINITY)) * se + q.systematic,
+        df,
+        settled: None,
+    }
+}
+
+pub(super) fn too_coarse(q: &Question) -> String {
+    let (systematic, margin) = (q.systematic, q.margin);
+    format!(
+        "the reference is too coarse for the margin: its systematic error may be \
+         {systematic:.3e}, the margin is {margin:.3e}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const INF: f64 = f64::INFINITY;
+
+    #[track_caller]
+    fn close(a: f64, b: f64) {
+        assert!((a - b).abs() <= 1e-11 * b.abs(), "{a} is not {b}");
+    }
+
+    #[track_caller]
+    fn settled(q: &Question) -> (Verdict, String) {
+        assert_eq!(q.defect(0.05), None);
+        weigh(q, 0.01)
+            .settled
+            .expect("a rule should have settled it")
+    }
+
+    #[test]
+    fn numbers_are_those_of_scipy() {
+        // se = hypot(.3, .4) = .5, distance 1, systematic .25, margin 3
+        let q = Question {
+            mean: 9.0,
+            std_error: 0.3,
+            expected_std_error: 0.4,
+            expected_df: 7.0,
+            systematic: 0.25,
+            margin: 3.0,
+            ..Question::example()
+        };
+        let e = weigh(&q, 0.01);
+        close(e.df, 14.891082368958473);
+        close(e.p_different, 0.1545161776089954);
+        close(e.p_outside, 0.0016273670145872247);
+        close(e.ci.0, -2.724886902301587);
+        close(e.ci.1, 0.7248869023015867);
+        close(e.mde, 2.365662685073887);
+    }
+
+    #[test]
+    fn without_two_blocks_nothing_is_known() {
+        let one = Question {
+            df: 0.0,
+            std_error: f64::NAN,
+            noise_free: true,
+            ..Question::example()
+        };
+        let reference = Question {
+            expected_std_error: 0.1,
+            expected_df: 0.0,
+            ..Question::example()
+        };
+        for q in [one, reference] {
+            let (verdict, reason) = settled(&q);
+            assert_eq!(verdict, Verdict::Inconclusive);
+            assert!(reason.contains("fewer than two blocks"));
+            let e = weigh(&q, 0.01);
+            assert_eq!((e.p_different, e.p_outside, e.mde), (1.0, 1.0, INF));
+        }
+        // an exact reference has no blocks
+        assert!(
+            weigh(
+                &Question {
+                    expected_df: 0.0,
+                    ..Question::example()
+                },
+                0.01
+            )
+            .settled
+            .is_none()
+        );
+    }
+
+    #[test]
+    fn no_variation_is_not_certainty() {
+        // the last is rounding, and neither bias nor a noisy reference helps
+        for (mean, std_error, noise) in [(10.0, 0.0, 0.0), (17.0, 0.0, 0.1), (17.0, 3e-15, 0.0)] {
+            let q = Question {
+                mean,
+                std_error,
+                expected_std_error: noise,
+                ..Question::example()
+            };
+            let (verdict, reason) = settled(&q);
+            assert_eq!(verdict, Verdict::Inconclusive);
+            assert!(reason.contains("no variation was seen, so there is no interval"));
+        }
+        let tiny = Question {
+            std_error: 3e-14,
+            ..Question::example()
+        };
+        assert!(weigh(&tiny, 0.01).settled.is_none());
+    }
+
+    #[test]
+    fn noise_free_means_equal_and_without_variation() {
+        let exact = Question {
+            std_error: 0.0,
+            noise_free: true,
+            ..Question::example()
+        };
+        let verdict = |mean: f64, expected: f64, std_error: f64, systematic: f64| {
+            let (verdict, _) = settled(&Question {
+                mean,
+                expected,
+                std_error,
+                systematic,
+                ..exact.clone()
+            });
+            verdict
+        };
+        assert_eq!(verdict(10.0 + 9e-12, 10.0, 9e-12, 0.0), Verdict::Pass);
+        assert_eq!(verdict(10.0 + 1.1e-11, 10.0, 0.0, 0.0), Verdict::Fail);
+        assert_eq!(verdict(10.0, 10.0, 1.1e-11, 0.0), Verdict::Fail);
+        assert_eq!(verdict(0.0, 0.0, 0.0, 0.0), Verdict::Pass);
+        assert_eq!(verdict(1e-300, 0.0, 0.0, 0.0), Verdict::Fail);
+        // margin 1e-3: within, possibly outside, and beyond the reference's error
+        assert_eq!(verdict(10.0 + 3e-4, 10.0, 0.0, 4e-4), Verdict::Pass);
+        assert_eq!(verdict(10.0 + 8e-4, 10.0, 0.0, 9e-4), Verdict::Inconclusive);
+        assert_eq!(verdict(10.0 + 8e-4, 10.0, 0.0, 1e-4), Verdict::Fail);
+        let (_, reason) = settled(&Question {
+            std_error: 0.25,
+            ..exact.clone()
+        });
+        assert!(reason.contains("noise-free in theory, but it varies"));
+        // against a noisy reference it is a test like any other
+        let noisy = Question {
+            expected_std_error: 0.1,
+            expected_df: 9.0,
+            ..exact
+        };
+        let e = weigh(&noisy, 0.01);
+        assert!(e.settled.is_none() && e.df == 9.0);
+    }
+}

@@ -1,0 +1,17 @@
+//! Statistics of the bench; nothing here knows what light is.
+//!
+//! [`Moments`] condenses samples, [`student`] and [`multiplicity`] hold the
+//! distribution theory, and [`judge()`] turns measurements into verdicts. All
+//! error rates promised are those of the whole family of questions.
+
+mod evidence;
+pub mod judge;
+#[cfg(test)]
+mod judge_rates;
+pub mod moments;
+pub mod multiplicity;
+mod question;
+pub mod student;
+
+pub use judge::{Answer, Question, Verdict, judge};
+pub use moments::Moments;
