@@ -2,7 +2,7 @@
 //! a ray be traced.
 
 use crate::sampling::Stream;
-use crate::scene::{Hit, LightSampling, Ray, Rgb, Scene};
+use crate::scene::{Directions, Hit, LightSampling, Ray, Rgb, Scene};
 use glam::DVec3;
 
 /// Bounces 0 to 7 have a bin each; the last bin holds all later ones.
@@ -98,11 +98,18 @@ impl<'a> Ctx<'a> {
         let pick = if self.scene.light_count() > 1 { self.u1() } else { 0.0 };
         let point = self.u2();
         let Some(light) = self.scene.sample_light(lights, x.p, pick, point) else { return Rgb::ZERO };
-        let cos = x.n.dot(light.to_light) / light.distance;
+        let cos = x.frame.n.dot(light.to_light) / light.distance;
         if cos <= 0.0 || !self.visible(x, light.to_light, light.surface) {
             return Rgb::ZERO;
         }
         x.material.f() * light.le * (cos / light.pdf.0)
+    }
+
+    /// A continued direction at `x`: the ray, and f cos θ / pdf.
+    #[inline]
+    pub fn scatter(&mut self, x: &Hit, directions: Directions) -> (Ray, Rgb) {
+        let s = directions.sample(&x.material, &x.frame, self.u2());
+        (x.spawn(s.wi), s.weight)
     }
 
     /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface.

@@ -52,13 +52,13 @@ impl Explicit {
             if copies == 0 {
                 return;
             }
+            beta *= 1.0 / q;
             for _ in 1..copies {
-                let s = self.directions.sample(&x.material, x.n, cx.u2());
-                self.walk(x.spawn(s.wi), beta * s.weight / q, bounce, cx);
+                let (next, weight) = cx.scatter(&x, self.directions);
+                self.walk(next, beta * weight, bounce, cx);
             }
-            let s = self.directions.sample(&x.material, x.n, cx.u2());
-            beta *= s.weight / q;
-            ray = x.spawn(s.wi);
+            let (next, weight) = cx.scatter(&x, self.directions);
+            (ray, beta) = (next, beta * weight);
         }
     }
 }

@@ -40,9 +40,8 @@ impl Recursive {
         let q = self.roulette.q(bounce, beta, x.material.albedo);
         for _ in 0..self.samples {
             for _ in 0..cx.copies(q) {
-                let s = self.directions.sample(&x.material, x.n, cx.u2());
-                let weight = s.weight / (q * f64::from(self.samples));
-                self.shade(x.spawn(s.wi), beta * weight, bounce + 1, cx);
+                let (next, weight) = cx.scatter(&x, self.directions);
+                self.shade(next, beta * weight / (q * f64::from(self.samples)), bounce + 1, cx);
             }
         }
     }

@@ -71,7 +71,7 @@ impl Block {
         self.pass += value;
         if let Some(mean) = self.pixels.mean.get_mut(pixel) {
             let delta = value - *mean;
-            *mean += delta / (self.pixels.n + 1) as f64;
+            *mean += delta * (1.0 / (self.pixels.n + 1) as f64);
             self.pixels.m2[pixel] += delta * (value - *mean);
         }
     }

@@ -49,10 +49,9 @@ pub struct DirectionSample {
 }
 
 impl Directions {
-    /// Draws a direction around the unit normal `n`.
+    /// Draws a direction around the normal of `frame`.
     #[inline]
-    pub fn sample(self, material: &Material, n: DVec3, u: (f64, f64)) -> DirectionSample {
-        let frame = Frame::around(n);
+    pub fn sample(self, material: &Material, frame: &Frame, u: (f64, f64)) -> DirectionSample {
         match self {
             Directions::Cosine => {
                 let local = cosine_hemisphere(u);

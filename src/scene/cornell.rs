@@ -43,12 +43,9 @@ pub fn cornell(blocks: bool, resolution: u32) -> Scene {
     if blocks {
         rectangles.extend(data.blocks);
     }
-    let surface = |r: &RectangleData| Surface {
-        shape: Shape::Rectangle(facing(r)),
-        material: Material {
-            albedo: data.materials[&r.material],
-            le: r.emission,
-        },
+    let surface = |r: &RectangleData| {
+        let material = Material { albedo: data.materials[&r.material], le: r.emission };
+        Surface::new(Shape::Rectangle(facing(r)), material)
     };
     let c = &data.camera;
     let camera = Pinhole::new(c.origin, c.direction, c.up, c.fov_degrees, (resolution, resolution));

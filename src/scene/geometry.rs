@@ -1,7 +1,6 @@
 //! Rays and shapes. Distances are in units of the ray's direction, which is a unit vector except for shadow rays.
 
 use super::Surface;
-use crate::sampling::warp;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -221,20 +220,6 @@ impl Shape {
         }
     }
 
-    /// The point on the shape nearest to `p` (which lies there up to rounding) and the front's unit normal.
-    #[inline]
-    pub fn at(&self, p: DVec3) -> (DVec3, DVec3) {
-        match self {
-            Shape::Rectangle(r) => (p, r.normal()),
-            Shape::Triangle(t) => (p, (t.b - t.a).cross(t.c - t.a).normalize()),
-            Shape::Disk(d) => (p, d.normal),
-            Shape::Sphere(s) => {
-                let out = (p - s.center).normalize();
-                (s.center + s.radius * out, if s.inward { -out } else { out })
-            }
-        }
-    }
-
     /// Area of the surface (one side).
     pub fn area(&self) -> f64 {
         match self {
@@ -245,25 +230,13 @@ impl Shape {
         }
     }
 
-    /// A point uniform over the area.
-    #[inline]
-    pub fn sample_area(&self, u: (f64, f64)) -> DVec3 {
+    /// The front's unit normal; for a sphere, its axis.
+    pub fn direction(&self) -> DVec3 {
         match self {
-            Shape::Rectangle(r) => {
-                r.center + (2.0 * u.0 - 1.0) * r.half_u + (2.0 * u.1 - 1.0) * r.half_v
-            }
-            Shape::Triangle(t) => {
-                let (b, c) = warp::triangle(u);
-                t.a + b * (t.b - t.a) + c * (t.c - t.a)
-            }
-            Shape::Disk(d) => {
-                let (x, y) = warp::disk(u);
-                d.center + d.radius * warp::Frame::around(d.normal).to_world(DVec3::new(x, y, 0.0))
-            }
-            Shape::Sphere(s) => {
-                let local = warp::sphere_band(s.low, s.high, u);
-                s.center + s.radius * warp::Frame::around(s.axis).to_world(local)
-            }
+            Shape::Rectangle(r) => r.normal(),
+            Shape::Triangle(t) => (t.b - t.a).cross(t.c - t.a).normalize(),
+            Shape::Disk(d) => d.normal,
+            Shape::Sphere(s) => s.axis,
         }
     }
 }

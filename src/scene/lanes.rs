@@ -3,6 +3,7 @@
 
 use super::{Ray, Shape, Surface};
 use glam::DVec3;
+use multiversion::multiversion;
 
 const WIDTH: usize = 8;
 type Lane = [f64; WIDTH];
@@ -59,43 +60,16 @@ impl RectangleLanes {
     /// Distance and number of the nearest rectangle; infinity if there is none.
     #[inline]
     pub fn nearest(&self, ray: &Ray) -> (f64, u32) {
-        let own = self.slot_of(ray.from);
-        let mut best = [f64::INFINITY; WIDTH];
-        let mut best_group = [0u64; WIDTH];
-        for (g, group) in self.groups.iter().enumerate() {
-            let mut t = group.distances(ray);
-            if own / WIDTH == g {
-                t[own % WIDTH] = f64::INFINITY;
-            }
-            for k in 0..WIDTH {
-                let closer = t[k] < best[k];
-                best[k] = if closer { t[k] } else { best[k] };
-                best_group[k] = if closer { g as u64 } else { best_group[k] };
-            }
-        }
-        let mut lane = 0;
-        for k in 1..WIDTH {
-            lane = if best[k] < best[lane] { k } else { lane };
-        }
-        if best[lane] == f64::INFINITY {
+        if self.groups.is_empty() {
             return (f64::INFINITY, 0);
         }
-        (best[lane], self.groups[best_group[lane] as usize].id[lane])
+        nearest(&self.groups, ray, self.slot_of(ray.from))
     }
 
     /// Whether a rectangle other than those of `ray.from` and `to` crosses the open segment.
     #[inline]
     pub fn blocks(&self, ray: &Ray, to: u32) -> bool {
-        let ends = [self.slot_of(ray.from), self.slot_of(to)];
-        self.groups.iter().enumerate().any(|(g, group)| {
-            let mut t = group.distances(ray);
-            for own in ends {
-                if own / WIDTH == g {
-                    t[own % WIDTH] = f64::INFINITY;
-                }
-            }
-            t.iter().fold(false, |blocked, &t| blocked | (t < 1.0))
-        })
+        !self.groups.is_empty() && blocks(&self.groups, ray, [self.slot_of(ray.from), self.slot_of(to)])
     }
 
     #[inline]
@@ -104,6 +78,41 @@ impl RectangleLanes {
             if s == ABSENT { usize::MAX } else { s as usize }
         })
     }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn nearest(groups: &[Group], ray: &Ray, own: usize) -> (f64, u32) {
+    let mut best = [f64::INFINITY; WIDTH];
+    let mut best_group = [0u64; WIDTH];
+    for (g, group) in groups.iter().enumerate() {
+        let mut t = group.distances(ray);
+        if own / WIDTH == g {
+            t[own % WIDTH] = f64::INFINITY;
+        }
+        for k in 0..WIDTH {
+            let closer = t[k] < best[k];
+            best[k] = if closer { t[k] } else { best[k] };
+            best_group[k] = if closer { g as u64 } else { best_group[k] };
+        }
+    }
+    let mut lane = 0;
+    for k in 1..WIDTH {
+        lane = if best[k] < best[lane] { k } else { lane };
+    }
+    (best[lane], groups[best_group[lane] as usize].id[lane])
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn blocks(groups: &[Group], ray: &Ray, ends: [usize; 2]) -> bool {
+    groups.iter().enumerate().any(|(g, group)| {
+        let mut t = group.distances(ray);
+        for own in ends {
+            if own / WIDTH == g {
+                t[own % WIDTH] = f64::INFINITY;
+            }
+        }
+        t.iter().fold(false, |blocked, &t| blocked | (t < 1.0))
+    })
 }
 
 impl Group {
@@ -133,7 +142,7 @@ impl Group {
     }
 
     /// Distances along the ray, infinite where a rectangle is missed.
-    #[inline]
+    #[inline(always)] // compiled anew for each instruction set
     fn distances(&self, ray: &Ray) -> Lane {
         let (o, d) = (ray.o, ray.d);
         let mut t = [0.0; WIDTH];

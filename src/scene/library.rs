@@ -129,7 +129,7 @@ fn furnace_box(albedo: Rgb, le: Rgb, view: View) -> Scene {
         let half_u = DVec3::AXES[(axis + 1) % 3] * half[(axis + 1) % 3];
         let half_v = inward.cross(half_u).normalize() * half[(axis + 2) % 3];
         let center = CENTER + sign * half[axis] * DVec3::AXES[axis];
-        Surface { shape: Shape::Rectangle(Rectangle { center, half_u, half_v }), material }
+        Surface::new(Shape::Rectangle(Rectangle { center, half_u, half_v }), material)
     };
     let walls = (0..3).flat_map(|axis| [wall(axis, 1.0), wall(axis, -1.0)]).collect();
     let (point, direction) = (CENTER + 0.3 * half, -oblique());
@@ -149,13 +149,11 @@ fn integrating_sphere(patches: &[Patch], looks_at: usize, view: View) -> Scene {
         low = if i + 1 == patches.len() { -1.0 } else { high - 2.0 * patch.fraction };
         let (center, radius, axis) = (CENTER, RADIUS, oblique());
         let band = SpherePatch { center, radius, axis, low, high, inward: true };
+        let material = Material { albedo: patch.albedo, le: patch.emission };
+        surfaces.push(Surface::new(Shape::Sphere(band), material));
         if i == looks_at {
-            target = Shape::Sphere(band).sample_area((0.5, 0.3));
+            target = surfaces[i].sample_area((0.5, 0.3)).0;
         }
-        surfaces.push(Surface {
-            shape: Shape::Sphere(band),
-            material: Material { albedo: patch.albedo, le: patch.emission },
-        });
     }
     let eye = CENTER + DVec3::new(0.2, 0.1, -0.3);
     let sensor = match view {
@@ -169,9 +167,7 @@ fn integrating_sphere(patches: &[Patch], looks_at: usize, view: View) -> Scene {
 }
 
 fn custom(primitives: &[Primitive], sensor: Sensor) -> Scene {
-    let surface = |p: &Primitive| Surface {
-        shape: p.shape,
-        material: Material { albedo: p.albedo, le: p.emission },
-    };
+    let surface =
+        |p: &Primitive| Surface::new(p.shape, Material { albedo: p.albedo, le: p.emission });
     Scene::new(primitives.iter().map(surface).collect(), sensor)
 }

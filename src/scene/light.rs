@@ -1,6 +1,7 @@
 //! Emitters, picked in proportion to their power, and points on them.
 
 use super::{Rgb, Shape, Surface, solid_angle};
+use crate::sampling::warp::Frame;
 use crate::sampling::{PdfA, PdfW};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -91,15 +92,14 @@ impl Lights {
         let last = self.lights.last()?;
         let light = self.lights.iter().find(|l| u < l.cdf).unwrap_or(last);
         let surface = &surfaces[light.surface as usize];
-        let (point, solid_angle) = match how {
-            LightSampling::SolidAngle => by_solid_angle(&surface.shape, p, v)?,
-            LightSampling::Area => (surface.shape.sample_area(v), None),
+        let (point, frame, solid_angle) = match how {
+            LightSampling::SolidAngle => by_solid_angle(surface, p, v)?,
+            LightSampling::Area => by_area(surface, v),
         };
-        let (point, n) = surface.shape.at(point);
         let to_light = point - p;
         let distance_squared = to_light.length_squared();
         let distance = distance_squared.sqrt();
-        let cos = -n.dot(to_light) / distance;
+        let cos = -frame.n.dot(to_light) / distance;
         if cos <= 0.0 || distance == 0.0 {
             return None;
         }
@@ -117,17 +117,27 @@ impl Lights {
     }
 }
 
-/// A point uniform over the solid angle, and that angle [sr]; a point uniform over the area and `None`
-/// where the shape has no such map; nothing where the shape subtends no solid angle.
+/// A point, the frame of the front's normal there, and the solid angle [sr] if the point is uniform over it.
+type Point = (DVec3, Frame, Option<f64>);
+
 #[inline]
-fn by_solid_angle(shape: &Shape, p: DVec3, v: (f64, f64)) -> Option<(DVec3, Option<f64>)> {
-    let sample = match shape {
+fn by_area(surface: &Surface, v: (f64, f64)) -> Point {
+    let (point, frame) = surface.sample_area(v);
+    (point, frame, None)
+}
+
+/// Uniform over the solid angle, or over the area where the shape has no such map; nothing where the shape subtends no
+/// solid angle.
+#[inline]
+fn by_solid_angle(surface: &Surface, p: DVec3, v: (f64, f64)) -> Option<Point> {
+    let sample = match &surface.shape {
         Shape::Rectangle(r) => solid_angle::rectangle(p, r.center, r.half_u, r.half_v, v)?,
         Shape::Triangle(t) => solid_angle::triangle(p, t.a, t.b, t.c, v)?,
         Shape::Sphere(s) if !s.inward && s.low <= -1.0 && s.high >= 1.0 => {
             solid_angle::sphere(p, s.center, s.radius, v)?
         }
-        _ => return Some((shape.sample_area(v), None)),
+        _ => return Some(by_area(surface, v)),
     };
-    Some((sample.point, Some(sample.solid_angle)))
+    let (point, frame) = surface.at(sample.point);
+    Some((point, frame, Some(sample.solid_angle)))
 }

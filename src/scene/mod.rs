@@ -12,12 +12,15 @@ pub mod lanes;
 pub mod library;
 pub mod light;
 pub mod solid_angle;
+mod surface;
 
 pub use bsdf::{Directions, Material};
 pub use camera::Sensor;
 pub use geometry::{Ray, Shape};
 pub use light::{LightSample, LightSampling};
+pub use surface::Surface;
 
+use crate::sampling::warp::Frame;
 use glam::DVec3;
 use lanes::RectangleLanes;
 use light::Lights;
@@ -25,22 +28,13 @@ use light::Lights;
 /// Red, green, blue: radiance [W m^-2 sr^-1], albedo or throughput, component by component.
 pub type Rgb = DVec3;
 
-/// A shape and what it is made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
-    /// Where it is; its front is the side its normal points to.
-    pub shape: Shape,
-    /// What its front reflects and emits.
-    pub material: Material,
-}
-
 /// The front of a surface, met by a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     /// The point [scene units].
     pub p: DVec3,
-    /// Unit normal on the front side.
-    pub n: DVec3,
+    /// Frame around the unit normal on the front side.
+    pub frame: Frame,
     /// Albedo and emission at the point.
     pub material: Material,
     /// Which surface was hit.
@@ -104,13 +98,9 @@ impl Scene {
             return None;
         }
         let surface = &self.surfaces[id as usize];
-        let (p, n) = surface.shape.at(ray.o + t * ray.d);
-        (n.dot(ray.d) < 0.0).then_some(Hit {
-            p,
-            n,
-            material: surface.material,
-            surface: id,
-        })
+        let (p, frame) = surface.at(ray.o + t * ray.d);
+        let front = frame.n.dot(ray.d) < 0.0;
+        front.then_some(Hit { p, frame, material: surface.material, surface: id })
     }
 
     /// Whether nothing stands between the point `ray.o` on surface `ray.from` and `ray.o + ray.d` on surface `to`.

@@ -1,0 +1,58 @@
+//! A shape with its material and what is worth computing once.
+
+use super::{Material, Shape};
+use crate::sampling::warp::{self, Frame};
+use glam::DVec3;
+
+/// A shape and what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Where it is; its front is the side its normal points to.
+    pub shape: Shape,
+    /// What its front reflects and emits.
+    pub material: Material,
+    /// Frame around the front's normal; for a sphere, around its axis.
+    frame: Frame,
+}
+
+impl Surface {
+    /// A surface.
+    pub fn new(shape: Shape, material: Material) -> Self {
+        Surface { shape, material, frame: Frame::around(shape.direction()) }
+    }
+
+    /// The point on the surface nearest to `p`, which lies there up to rounding, and the frame of the front's normal.
+    #[inline]
+    pub fn at(&self, p: DVec3) -> (DVec3, Frame) {
+        match &self.shape {
+            Shape::Sphere(s) => {
+                let out = (p - s.center).normalize();
+                (s.center + s.radius * out, Frame::around(if s.inward { -out } else { out }))
+            }
+            _ => (p, self.frame),
+        }
+    }
+
+    /// A point uniform over the area, and the frame of the front's normal there.
+    #[inline]
+    pub fn sample_area(&self, u: (f64, f64)) -> (DVec3, Frame) {
+        match &self.shape {
+            Shape::Rectangle(r) => {
+                let p = r.center + (2.0 * u.0 - 1.0) * r.half_u + (2.0 * u.1 - 1.0) * r.half_v;
+                (p, self.frame)
+            }
+            Shape::Triangle(t) => {
+                let (b, c) = warp::triangle(u);
+                (t.a + b * (t.b - t.a) + c * (t.c - t.a), self.frame)
+            }
+            Shape::Disk(d) => {
+                let (x, y) = warp::disk(u);
+                (d.center + d.radius * self.frame.to_world(DVec3::new(x, y, 0.0)), self.frame)
+            }
+            Shape::Sphere(s) => {
+                let out = self.frame.to_world(warp::sphere_band(s.low, s.high, u));
+                (s.center + s.radius * out, Frame::around(if s.inward { -out } else { out }))
+            }
+        }
+    }
+}
