@@ -95,20 +95,19 @@ impl Rectangle {
 }
 
 impl SpherePatch {
-    /// Whether the direction `n` (unit, from the centre) belongs to the band.
-    /// Half-open, so that neighbouring bands share no point and leave no gap; the pole belongs to the top band.
+    /// Whether the point of the sphere at `q` from its centre belongs to the band.
+    /// Half-open, so that neighbouring bands share no point and leave no gap; a pole belongs to its band.
     #[inline]
-    fn contains(&self, n: DVec3) -> bool {
-        let z = n.dot(self.axis);
-        (z >= self.low || self.low <= -1.0) && (z < self.high || self.high >= 1.0)
+    fn contains(&self, q: DVec3) -> bool {
+        let z = q.dot(self.axis);
+        (self.low <= -1.0 || z >= self.low * self.radius) && (self.high >= 1.0 || z < self.high * self.radius)
     }
 
-    /// Parameters at which the line meets the whole sphere, in order, if it does.
+    /// Parameters at which the line meets the whole sphere, in order, if it does; `a` = |d|².
     /// `on` says that `o` lies on this very sphere: then one root is 0 exactly, and the other needs no cancellation.
     #[inline]
-    fn roots(&self, ray: &Ray, on: bool) -> Option<(f64, f64)> {
+    fn roots(&self, ray: &Ray, a: f64, on: bool) -> Option<(f64, f64)> {
         let oc = ray.o - self.center;
-        let a = ray.d.length_squared();
         let half_b = oc.dot(ray.d);
         if on {
             let other = -2.0 * half_b / a;
@@ -132,18 +131,18 @@ impl SpherePatch {
 
     #[inline]
     fn contains_at(&self, ray: &Ray, t: f64) -> bool {
-        self.contains((ray.o + t * ray.d - self.center).normalize())
+        self.contains(ray.o + t * ray.d - self.center)
     }
 }
 
 impl Shape {
-    /// Distance to this shape (number `id`) along the ray, infinite if it is missed.
+    /// Distance to this shape (number `id`) along a ray of unit direction, infinite if it is missed.
     #[inline]
     pub fn intersect(&self, ray: &Ray, id: u32, all: &[Surface]) -> f64 {
         match self {
             Shape::Sphere(s) => {
                 let on = ray.from == id || is_on(s, ray.from, all);
-                let Some((near, far)) = s.roots(ray, on) else {
+                let Some((near, far)) = s.roots(ray, 1.0, on) else {
                     return f64::INFINITY;
                 };
                 if near > 0.0 && s.contains_at(ray, near) {
@@ -175,7 +174,7 @@ impl Shape {
                     };
                     return other > 0.0 && other < 1.0 && s.contains_at(ray, other);
                 }
-                let Some((near, far)) = s.roots(ray, on_from) else {
+                let Some((near, far)) = s.roots(ray, ray.d.length_squared(), on_from) else {
                     return false;
                 };
                 let inside = |t: f64| t > 0.0 && t < 1.0 && s.contains_at(ray, t);

@@ -21,13 +21,14 @@ impl Surface {
         Surface { shape, material, frame: Frame::around(shape.direction()) }
     }
 
-    /// The point on the surface nearest to `p`, which lies there up to rounding, and the frame of the front's normal.
+    /// The point `p` of the surface, and the frame of the front's normal there. A point of a sphere is not projected:
+    /// the next intersection keeps its distance from the centre but for rounding.
     #[inline]
     pub fn at(&self, p: DVec3) -> (DVec3, Frame) {
         match &self.shape {
             Shape::Sphere(s) => {
-                let out = (p - s.center).normalize();
-                (s.center + s.radius * out, Frame::around(if s.inward { -out } else { out }))
+                let out = (p - s.center) * (1.0 / s.radius);
+                (p, Frame::around(if s.inward { -out } else { out }))
             }
             _ => (p, self.frame),
         }
