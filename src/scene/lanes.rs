@@ -6,6 +6,8 @@ use glam::DVec3;
 use multiversion::multiversion;
 
 const WIDTH: usize = 8;
+/// Groups whose distances are held at once.
+const CHUNK: usize = 8;
 type Lane = [f64; WIDTH];
 
 /// Eight rectangles as plane equations. Unused lanes hold a rectangle that nothing hits.
@@ -20,6 +22,8 @@ struct Group {
     u0: Lane,
     v: [Lane; 3],
     v0: Lane,
+    /// Place among all lanes, as a number that vectors compare.
+    slot: Lane,
     /// Numbers of the rectangles in the scene.
     id: [u32; WIDTH],
 }
@@ -28,18 +32,16 @@ struct Group {
 #[derive(Clone, Debug)]
 pub struct RectangleLanes {
     groups: Vec<Group>,
-    /// Where surface i sits: group * WIDTH + lane, or `ABSENT`.
-    slot: Vec<u32>,
+    /// Where surface i sits: group * WIDTH + lane, or -1.
+    slot: Vec<f64>,
 }
-
-const ABSENT: u32 = u32::MAX;
 
 impl RectangleLanes {
     /// Collects the rectangles among `surfaces`.
     pub fn new(surfaces: &[Surface]) -> Self {
         let mut lanes = RectangleLanes {
             groups: Vec::new(),
-            slot: vec![ABSENT; surfaces.len()],
+            slot: vec![-1.0; surfaces.len()],
         };
         let mut count = 0;
         for (id, surface) in surfaces.iter().enumerate() {
@@ -51,7 +53,8 @@ impl RectangleLanes {
             }
             let (group, lane) = (count / WIDTH, count % WIDTH);
             lanes.groups[group].set(lane, id as u32, r.normal(), r.center, r.half_u, r.half_v);
-            lanes.slot[id] = count as u32;
+            lanes.slot[id] = count as f64;
+            lanes.groups[group].slot[lane] = count as f64;
             count += 1;
         }
         lanes
@@ -69,48 +72,48 @@ impl RectangleLanes {
     /// Whether a rectangle other than those of `ray.from` and `to` crosses the open segment.
     #[inline]
     pub fn blocks(&self, ray: &Ray, to: u32) -> bool {
-        !self.groups.is_empty() && blocks(&self.groups, ray, [self.slot_of(ray.from), self.slot_of(to)])
+        !self.groups.is_empty() && blocks(&self.groups, ray, self.slot_of(ray.from), self.slot_of(to))
     }
 
+    /// Where a surface sits among the lanes, as a number that lanes compare with; -1 if it is no rectangle.
     #[inline]
-    fn slot_of(&self, surface: u32) -> usize {
-        self.slot.get(surface as usize).map_or(usize::MAX, |&s| {
-            if s == ABSENT { usize::MAX } else { s as usize }
-        })
+    fn slot_of(&self, surface: u32) -> f64 {
+        self.slot.get(surface as usize).copied().unwrap_or(-1.0)
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn nearest(groups: &[Group], ray: &Ray, own: usize) -> (f64, u32) {
-    let mut best = [f64::INFINITY; WIDTH];
-    let mut best_group = [0u64; WIDTH];
-    for (g, group) in groups.iter().enumerate() {
-        let mut t = group.distances(ray);
-        if own / WIDTH == g {
-            t[own % WIDTH] = f64::INFINITY;
-        }
-        for k in 0..WIDTH {
-            let closer = t[k] < best[k];
-            best[k] = if closer { t[k] } else { best[k] };
-            best_group[k] = if closer { g as u64 } else { best_group[k] };
-        }
-    }
-    let mut lane = 0;
-    for k in 1..WIDTH {
-        lane = if best[k] < best[lane] { k } else { lane };
-    }
-    (best[lane], groups[best_group[lane] as usize].id[lane])
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
-fn blocks(groups: &[Group], ray: &Ray, ends: [usize; 2]) -> bool {
-    groups.iter().enumerate().any(|(g, group)| {
-        let mut t = group.distances(ray);
-        for own in ends {
-            if own / WIDTH == g {
-                t[own % WIDTH] = f64::INFINITY;
+fn nearest(groups: &[Group], ray: &Ray, own: f64) -> (f64, u32) {
+    let mut nearest = (f64::INFINITY, 0);
+    for chunk in groups.chunks(CHUNK) {
+        let mut t = [[f64::INFINITY; WIDTH]; CHUNK];
+        let mut best = [f64::INFINITY; WIDTH];
+        for (t, group) in t.iter_mut().zip(chunk) {
+            *t = group.distances(ray, own, -1.0);
+            for k in 0..WIDTH {
+                best[k] = if t[k] < best[k] { t[k] } else { best[k] };
             }
         }
+        let lane = least(&best);
+        if best[lane] < nearest.0 {
+            let group = (0..chunk.len()).find(|&g| t[g][lane] == best[lane]).unwrap_or(0);
+            nearest = (best[lane], chunk[group].id[lane]);
+        }
+    }
+    nearest
+}
+
+/// The lane of the smallest value. A call of its own, or the compiler takes the loop before it to pieces.
+#[inline(never)]
+fn least(t: &Lane) -> usize {
+    let closer = |a: usize, b: usize| if t[b] < t[a] { b } else { a };
+    closer(closer(closer(0, 1), closer(2, 3)), closer(closer(4, 5), closer(6, 7)))
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn blocks(groups: &[Group], ray: &Ray, own: f64, to: f64) -> bool {
+    groups.iter().any(|group| {
+        let t = group.distances(ray, own, to);
         t.iter().fold(false, |blocked, &t| blocked | (t < 1.0))
     })
 }
@@ -124,6 +127,7 @@ impl Group {
             u0: [0.0; WIDTH],
             v: [[0.0; WIDTH]; 3],
             v0: [0.0; WIDTH],
+            slot: [f64::MAX; WIDTH],
             id: [0; WIDTH],
         }
     }
@@ -141,9 +145,9 @@ impl Group {
         self.id[lane] = id;
     }
 
-    /// Distances along the ray, infinite where a rectangle is missed.
+    /// Distances along the ray, infinite where a rectangle is missed or sits at one of the two slots.
     #[inline(always)] // compiled anew for each instruction set
-    fn distances(&self, ray: &Ray) -> Lane {
+    fn distances(&self, ray: &Ray, own: f64, to: f64) -> Lane {
         let (o, d) = (ray.o, ray.d);
         let mut t = [0.0; WIDTH];
         for k in 0..WIDTH {
@@ -152,7 +156,8 @@ impl Group {
             let p = o + s * d;
             let a = (dot(&self.u, p) - self.u0[k]).abs();
             let b = (dot(&self.v, p) - self.v0[k]).abs();
-            let inside = (s > 0.0) & (a <= 1.0) & (b <= 1.0);
+            let other = (self.slot[k] != own) & (self.slot[k] != to);
+            let inside = (s > 0.0) & (a <= 1.0) & (b <= 1.0) & other;
             t[k] = if inside { s } else { f64::INFINITY };
         }
         t
