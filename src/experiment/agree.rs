@@ -39,8 +39,12 @@ pub(super) fn compare(plan: &Plan, cells: &[Option<Cell>], rows: &mut Vec<Row>, 
 type IsAnchor<'a> = Box<dyn Fn(&CellPlan) -> bool + 'a>;
 
 fn anchor_of((index, claim): (usize, &Claim)) -> Option<(usize, f64, IsAnchor<'_>)> {
-    let Claim::Agree { estimator, roulette, margin, .. } = claim else { return None };
-    let is_anchor = move |c: &CellPlan| c.estimator_label == *estimator && c.roulette_label == *roulette;
+    let Claim::Agree { estimator, roulette, scene, margin, .. } = claim else { return None };
+    let is_anchor = move |c: &CellPlan| {
+        c.estimator_label == *estimator
+            && c.roulette_label == *roulette
+            && scene.as_ref().is_none_or(|only| *only == c.scene_label)
+    };
     Some((index, *margin, Box::new(is_anchor)))
 }
 

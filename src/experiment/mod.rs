@@ -10,6 +10,7 @@ pub mod plan;
 pub mod row;
 pub mod run;
 pub mod spec;
+pub mod store;
 pub mod verdict;
 
 pub use cell::Cell;

@@ -84,8 +84,11 @@ const MAX_CELL_RAYS: f64 = 1e11;
 /// Rays a second and core that predicted times assume.
 pub const RAYS_PER_SECOND: f64 = 1e7;
 
-/// Paths a block, about.
+/// Paths a block, at most.
 const BLOCK_PATHS: u64 = 4096;
+
+/// Blocks a cell, at least, if it has the samples.
+const MIN_BLOCKS: u64 = 64;
 
 impl Plan {
     /// Resolves the experiment `name` from the text of its file.
@@ -134,17 +137,14 @@ impl Plan {
 
     /// Fixes each cell's samples and blocks.
     fn allot(&mut self, overrides: &Overrides) {
-        let limits = self.spec.claim.iter().find_map(|claim| match claim {
-            Claim::Unbiased(limits) => Some(*limits),
-            _ => None,
-        });
+        let claims = &self.spec.claim;
+        let limits_of =
+            |scene: &str| claims.iter().filter_map(Claim::unbiased).find(|limits| limits.covers(scene));
         let questions = self.cells.len() * 3 * (BINS + 1);
         for cell in &mut self.cells {
             let (width, height) = cell.scene.build().sensor.resolution();
             cell.pixels = u64::from(width) * u64::from(height);
-            // two passes at least: their difference shows each pixel's variance
-            cell.block = (BLOCK_PATHS / cell.pixels).max(2);
-            match (overrides.samples, self.spec.max_samples, limits) {
+            match (overrides.samples, self.spec.max_samples, limits_of(&cell.scene_label)) {
                 (Some(samples), _, _) => cell.samples = samples,
                 (None, Some(most), Some(limits)) if most > cell.samples => {
                     let wanted = wanted_samples(cell, limits, questions);
@@ -155,6 +155,8 @@ impl Plan {
             if overrides.quick {
                 cell.samples = (cell.samples / 100).max(2);
             }
+            // many blocks, or the t quantile is large; two passes at least, whose difference shows a pixel's variance
+            cell.block = (cell.samples / MIN_BLOCKS).min(BLOCK_PATHS / cell.pixels).max(2);
             // whole blocks only, and two of them at least, or there is no standard error
             cell.samples = cell.samples.div_ceil(cell.block).max(2) * cell.block;
         }
@@ -193,7 +195,7 @@ fn rule_label(cell: &CellPlan, swept: &[String]) -> String {
 
 /// Realizations after which an unbiased cell is shown to be within the margin in each channel, by theory's variance:
 /// n = ((z_alpha + z_beta) sigma / (margin x mean))², with alpha shared among `questions`.
-fn wanted_samples(cell: &CellPlan, limits: Limits, questions: usize) -> Option<u64> {
+fn wanted_samples(cell: &CellPlan, limits: &Limits, questions: usize) -> Option<u64> {
     const Z_POWER: f64 = 2.0; // 97.7 %
     let closed = ClosedForm::of(&cell.scene, &cell.estimator)?;
     let z = student::quantile(1.0 - limits.alpha / questions as f64, f64::INFINITY) + Z_POWER;

@@ -411,6 +411,9 @@ pub enum Claim {
         estimator: String,
         /// Label of its termination rule.
         roulette: String,
+        /// The only scene it is about; all scenes if left out.
+        #[serde(default)]
+        scene: Option<String>,
         /// Probability of any false alarm among all questions of this claim.
         #[serde(deserialize_with = "input::inside_unit")]
         alpha: f64,
@@ -428,12 +431,42 @@ impl Claim {
             Claim::Agree { alpha, .. } => *alpha,
         }
     }
+
+    /// Its limits, if it claims the mean.
+    pub fn unbiased(&self) -> Option<&Limits> {
+        if let Claim::Unbiased(limits) = self { Some(limits) } else { None }
+    }
+
+    /// Its limits, if it claims the means of tiles.
+    pub fn tiles(&self) -> Option<&Limits> {
+        if let Claim::Tiles(limits) = self { Some(limits) } else { None }
+    }
+
+    /// Its limits, if it claims the variance.
+    pub fn variance(&self) -> Option<&Limits> {
+        if let Claim::Variance(limits) = self { Some(limits) } else { None }
+    }
+
+    /// Its limits, if it claims the cost.
+    pub fn cost(&self) -> Option<&Limits> {
+        if let Claim::Cost(limits) = self { Some(limits) } else { None }
+    }
+}
+
+impl Limits {
+    /// Whether a claim with these limits is about this scene.
+    pub fn covers(&self, scene: &str) -> bool {
+        self.scene.as_ref().is_none_or(|only| only == scene)
+    }
 }
 
 /// Error probability and margin of a claim.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
+    /// The only scene it is about; all scenes if left out.
+    #[serde(default)]
+    pub scene: Option<String>,
     /// Probability of any false alarm among all questions of this claim.
     #[serde(deserialize_with = "input::inside_unit")]
     pub alpha: f64,
@@ -452,6 +485,10 @@ pub enum Plot {
         parameter: String,
         /// What is drawn, a panel each.
         show: Vec<Quantity>,
+        /// What tells the curves of a panel apart: `channel`, `estimator`, or another swept parameter (then the red
+        /// channel is shown).
+        #[serde(default = "channel")]
+        series: String,
         /// Logarithmic parameter axis.
         #[serde(default)]
         log: bool,
@@ -463,6 +500,10 @@ pub enum Plot {
     },
     /// Bias of every cell with its interval, against the margin.
     Bias {},
+}
+
+fn channel() -> String {
+    "channel".to_owned()
 }
 
 /// What a figure can show.

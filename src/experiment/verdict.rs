@@ -34,7 +34,8 @@ pub fn rows(plan: &Plan, cells: &[Option<Cell>]) -> Vec<Row> {
         let Some(cell) = cell else { continue };
         let closed = ClosedForm::of(&cell_plan.scene, &cell_plan.estimator);
         let subject = Subject { index, plan: cell_plan, cell, closed: closed.as_ref() };
-        let mut sheet = Sheet { claims: &plan.spec.claim, rows: &mut rows, asked: &mut asked };
+        let scene = &cell_plan.scene_label;
+        let mut sheet = Sheet { scene, claims: &plan.spec.claim, rows: &mut rows, asked: &mut asked };
         subject.means(&mut sheet);
         subject.spread(&mut sheet);
         subject.image(&mut sheet);
@@ -63,19 +64,19 @@ fn answer(plan: &Plan, rows: &mut [Row], asked: Vec<Asked>) {
 
 /// Where rows and questions are collected.
 struct Sheet<'a> {
+    scene: &'a str,
     claims: &'a [Claim],
     rows: &'a mut Vec<Row>,
     asked: &'a mut Vec<Asked>,
 }
 
 impl Sheet<'_> {
-    /// The first claim of a kind, with its limits.
-    fn claim(&self, kind: impl Fn(&Claim) -> Option<Limits>) -> Option<(usize, Limits)> {
-        self.claims.iter().enumerate().find_map(|(i, claim)| kind(claim).map(|limits| (i, limits)))
-    }
-
-    fn unbiased(&self) -> Option<(usize, Limits)> {
-        self.claim(|claim| if let Claim::Unbiased(limits) = claim { Some(*limits) } else { None })
+    /// The first claim of a kind about this scene: its index and margin.
+    fn claim(&self, kind: impl Fn(&Claim) -> Option<&Limits>) -> Option<(usize, f64)> {
+        self.claims.iter().enumerate().find_map(|(i, claim)| {
+            let limits = kind(claim)?;
+            limits.covers(self.scene).then_some((i, limits.margin))
+        })
     }
 
     fn state(&mut self, row: Row) {
@@ -165,8 +166,8 @@ impl Subject<'_> {
             None
         };
         sheet.state(row);
-        if let (Some((claim, limits)), Some(question)) = (sheet.unbiased(), question) {
-            sheet.ask(claim, Question { margin: question.margin * limits.margin, ..question });
+        if let (Some((claim, margin)), Some(question)) = (sheet.claim(Claim::unbiased), question) {
+            sheet.ask(claim, Question { margin: question.margin * margin, ..question });
         }
     }
 
@@ -216,8 +217,8 @@ impl Subject<'_> {
         }
         let legal = row.note.is_empty();
         sheet.state(row);
-        if let (Some((claim, limits)), true) = (sheet.unbiased(), legal) {
-            question.margin = limits.margin * closed.expected(channel, Counted::All).abs();
+        if let (Some((claim, margin)), true) = (sheet.claim(Claim::unbiased), legal) {
+            question.margin = margin * closed.expected(channel, Counted::All).abs();
             sheet.ask(claim, question);
         }
     }
@@ -233,9 +234,8 @@ impl Subject<'_> {
             row.against(rays, 0.0, Some(rays), "closed form");
         }
         sheet.state(row);
-        let claim = sheet.claim(|c| if let Claim::Cost(limits) = c { Some(*limits) } else { None });
-        if let (Some((claim, limits)), Some(rays)) = (claim, rays) {
-            let mut question = about(cost, self.cell.invalid(), rays, limits.margin * rays);
+        if let (Some((claim, margin)), Some(rays)) = (sheet.claim(Claim::cost), rays) {
+            let mut question = about(cost, self.cell.invalid(), rays, margin * rays);
             question.noise_free = self.plan.estimator.roulette().rule == Rule::None;
             sheet.ask(claim, question);
         }
@@ -260,10 +260,10 @@ impl Subject<'_> {
             row.note = "infinite fourth moment: the variance has no interval, not judged".to_owned();
         }
         sheet.state(row);
-        let claim = sheet.claim(|c| if let Claim::Variance(limits) = c { Some(*limits) } else { None });
-        if let (Some((claim, limits)), Some(std_error), true) = (claim, error, expected > 0.0) {
+        let claim = sheet.claim(Claim::variance);
+        if let (Some((claim, margin)), Some(std_error), true) = (claim, error, expected > 0.0) {
             let question = about(&self.cell.total[channel], self.cell.invalid(), expected, 0.0);
-            let (df, margin) = (f64::INFINITY, limits.margin * expected);
+            let (df, margin) = (f64::INFINITY, margin * expected);
             sheet.ask(claim, Question { mean: variance, std_error, df, margin, ..question });
         }
     }
@@ -297,7 +297,7 @@ impl Subject<'_> {
     fn tile(&self, tile: usize, reference: &Reference, sheet: &mut Sheet<'_>) {
         let tiles = TILES as usize;
         let stored = reference.tile(tiles, tile % tiles, tile / tiles);
-        let claim = sheet.claim(|c| if let Claim::Tiles(limits) = c { Some(*limits) } else { None });
+        let claim = sheet.claim(Claim::tiles);
         for channel in 0..3 {
             let measured = self.cell.tiles[tile][channel];
             let mut row = self.row(Estimand::Tile(tile), Some(channel), measured.mean);
@@ -305,10 +305,10 @@ impl Subject<'_> {
             let expected = self.plan.is_unbiased().then_some(stored.mean[channel]);
             row.against(stored.mean[channel], stored.std_error[channel], expected, "independent renderer");
             sheet.state(row);
-            if let (Some((claim, limits)), Some(expected)) = (claim, expected) {
+            if let (Some((claim, margin)), Some(expected)) = (claim, expected) {
                 let question = self.against_stored(&self.cell.blocks[channel], &stored, channel);
                 let (mean, std_error) = (measured.mean, measured.std_error);
-                sheet.ask(claim, Question { mean, std_error, margin: limits.margin * expected, ..question });
+                sheet.ask(claim, Question { mean, std_error, margin: margin * expected, ..question });
             }
         }
     }

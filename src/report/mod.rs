@@ -1,1 +1,95 @@
+//! From verdicts to things to read: CSV, figures, images, a page. Samples nothing.
+
+pub mod answer;
+mod curves;
 pub mod figure;
+pub mod images;
+pub mod lookup;
+mod page;
+pub mod plots;
+mod summary;
+pub mod table;
+pub mod terminal;
+
+pub use lookup::Lookup;
+
+use crate::experiment::store::Store;
+use crate::experiment::{Cell, Error, Plan, Row};
+use page::{Drawn, Picture};
+use std::io;
+use std::path::Path;
+
+/// Writes everything that follows from the cells into `store`; `images` of an earlier run are taken over from there.
+pub fn write(
+    plan: &Plan,
+    cells: &[Option<Cell>],
+    rows: &[Row],
+    store: &Store,
+    images: Option<&Path>,
+) -> Result<(), Error> {
+    let lookup = Lookup::new(plan, rows);
+    store.write("results.csv", &table::results(plan, rows))?;
+    let mut drawn = Vec::new();
+    for plots::Named { name, figure } in plots::figures(&lookup) {
+        let svg = figure::write(&figure, &store.path().join(&name)).map_err(|e| failed(store, &e))?;
+        drawn.push(Drawn { name, svg });
+    }
+    let pictures = match images {
+        None => draw_images(plan, cells, store)?,
+        Some(folder) => copy_images(plan, cells, store, folder)?,
+    };
+    let answer = answer::sentences(&lookup);
+    store.write("index.html", page::page(&lookup, &answer, &drawn, &pictures).as_bytes())
+}
+
+fn failed(store: &Store, error: &dyn std::error::Error) -> Error {
+    Error::io("cannot write to", store.path(), io::Error::other(error.to_string()))
+}
+
+/// Indices of the cells that have an image.
+fn with_images<'a>(plan: &'a Plan, cells: &'a [Option<Cell>]) -> impl Iterator<Item = (usize, &'a Cell)> {
+    let cells = cells.iter().enumerate().filter_map(|(i, cell)| Some((i, cell.as_ref()?)));
+    cells.filter(|&(i, _)| plan.cells[i].pixels > 1)
+}
+
+fn image_name(plan: &Plan, cell: usize) -> String {
+    plots::file_name(&[&plan.label(&plan.cells[cell])])
+}
+
+fn draw_images(plan: &Plan, cells: &[Option<Cell>], store: &Store) -> Result<Vec<Picture>, Error> {
+    let mut pictures = Vec::new();
+    // one exposure for all: pictures of a scene are there to be compared
+    let exposure = with_images(plan, cells).map(|(_, cell)| images::exposure(&cell.pixels)).reduce(f64::min);
+    for (i, cell) in with_images(plan, cells) {
+        let name = image_name(plan, i);
+        let path = store.path().join(format!("{name}.exr"));
+        images::write_exr(&path, &cell.pixels, &plan.cells[i].scene).map_err(|e| failed(store, &e))?;
+        let png = images::png(&cell.pixels, exposure.unwrap_or(1.0));
+        store.write(&format!("{name}.png"), &png)?;
+        pictures.push(Picture { label: plan.label(&plan.cells[i]), name, png });
+    }
+    Ok(pictures)
+}
+
+/// Rebuilding a report samples nothing, so the images are those of the run.
+fn copy_images(
+    plan: &Plan,
+    cells: &[Option<Cell>],
+    store: &Store,
+    folder: &Path,
+) -> Result<Vec<Picture>, Error> {
+    let mut pictures = Vec::new();
+    for (i, _) in with_images(plan, cells) {
+        let name = image_name(plan, i);
+        let read = |file: &str| {
+            let path = folder.join(file);
+            std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))
+        };
+        let exr = format!("{name}.exr");
+        store.write(&exr, &read(&exr)?)?;
+        let png = read(&format!("{name}.png"))?;
+        store.write(&format!("{name}.png"), &png)?;
+        pictures.push(Picture { label: plan.label(&plan.cells[i]), name, png });
+    }
+    Ok(pictures)
+}

@@ -21,14 +21,15 @@ impl Surface {
         Surface { shape, material, frame: Frame::around(shape.direction()) }
     }
 
-    /// The point `p` of the surface, and the frame of the front's normal there. A point of a sphere is not projected:
-    /// the next intersection keeps its distance from the centre but for rounding.
+    /// The point of the surface nearest to `p`, which lies there up to rounding, and the frame of the front's normal.
     #[inline]
     pub fn at(&self, p: DVec3) -> (DVec3, Frame) {
         match &self.shape {
             Shape::Sphere(s) => {
+                // one step of Newton's method towards unit length; without it rounding grows from bounce to bounce
                 let out = (p - s.center) * (1.0 / s.radius);
-                (p, Frame::around(if s.inward { -out } else { out }))
+                let out = out * (1.5 - 0.5 * out.length_squared());
+                (s.center + s.radius * out, Frame::around(if s.inward { -out } else { out }))
             }
             _ => (p, self.frame),
         }

@@ -2,10 +2,10 @@
 //! inside (a cosine-weighted direction lands uniformly on it), and any closed enclosure of a single material.
 //!
 //! A path is then an i.i.d. sequence of patches, and an estimator is the random recursion
-//! X_k = A + (1/N) sum_N (1/q) sum_copies W X_{k+1}. Its raw moments to the fourth order follow by binomial expansion,
+//! X_k = A + (1/N) sum_N (1/q) sum_copies W X_{k+1}. Its moments to the fourth order follow
 //! step by step from the last bounce to the first, or from the fixed point where the walk never ends.
 
-use super::moments::{RawMoments, fixed_sum, power, random_sum};
+use super::moments::{Central, fixed_sum, power, random_sum};
 use crate::estimator::{Estimator, Roulette, Rule};
 use crate::scene::library::Patch;
 use crate::scene::{Directions, Rgb};
@@ -113,21 +113,21 @@ impl<'a> Walk<'a> {
         self.roulette.reaches(bounce + 1 + u32::from(self.explicit))
     }
 
-    /// Raw moments of what the vertex itself adds at depth `bounce`.
-    fn own(&self, bounce: u32, patch: &Patch, channel: usize, counted: Counted) -> RawMoments {
+    /// Moments of what the vertex itself adds at depth `bounce`.
+    fn own(&self, bounce: u32, patch: &Patch, channel: usize, counted: Counted) -> Central {
         let counts = |b: u32| counted.contains(b) && self.roulette.reaches(b);
         if !self.explicit {
             let le = if counts(bounce) { patch.emission[channel] } else { 0.0 };
-            return RawMoments::constant(le);
+            return Central::constant(le);
         }
         if !counts(bounce + 1) {
-            return RawMoments::constant(0.0);
+            return Central::constant(0.0);
         }
         self.enclosure.direct(channel).scaled(patch.albedo[channel])
     }
 
-    /// Raw moments of the recursion at depth `bounce`, averaged over the patches or on one of them.
-    fn step(&self, bounce: u32, next: &RawMoments, channel: usize, counted: Counted) -> Vec<RawMoments> {
+    /// Moments of the recursion at depth `bounce`, averaged over the patches or on one of them.
+    fn step(&self, bounce: u32, next: &Central, channel: usize, counted: Counted) -> Vec<Central> {
         let on_patch = |patch: &Patch| {
             let own = self.own(bounce, patch, channel, counted);
             let q = self.q(bounce, patch);
@@ -135,7 +135,7 @@ impl<'a> Walk<'a> {
             if !self.continues(bounce) || q == 0.0 || rho == 0.0 {
                 return own;
             }
-            let weighted = next.weighted(|order| power(rho, order) * weight_moment(self.directions, order));
+            let weighted = next.times(&weight(self.directions)).scaled(rho);
             let branch = random_sum(q, &weighted).scaled(1.0 / q);
             own.plus(&fixed_sum(self.branches, &branch).scaled(1.0 / f64::from(self.branches)))
         };
@@ -143,12 +143,12 @@ impl<'a> Walk<'a> {
     }
 
     /// The fixed point of the recursion, from depth `bounce` on.
-    fn fixed_point(&self, bounce: u32, channel: usize, counted: Counted) -> RawMoments {
-        let mut moments = RawMoments::constant(0.0);
+    fn fixed_point(&self, bounce: u32, channel: usize, counted: Counted) -> Central {
+        let mut moments = Central::constant(0.0);
         for order in 1..=4 {
             let probe = |value: f64| {
                 let next = moments.with(order, value);
-                self.enclosure.average(&self.step(bounce, &next, channel, counted)).raw[order]
+                self.enclosure.average(&self.step(bounce, &next, channel, counted)).get(order)
             };
             let intercept = probe(0.0);
             let slope = probe(1.0) - intercept;
@@ -160,10 +160,10 @@ impl<'a> Walk<'a> {
         moments
     }
 
-    /// Raw moments of one sample of the radiance leaving each patch, in one channel.
-    pub fn moments(&self, channel: usize, counted: Counted) -> Vec<RawMoments> {
+    /// Moments of one sample of the radiance leaving each patch, in one channel.
+    pub fn moments(&self, channel: usize, counted: Counted) -> Vec<Central> {
         let (mut next, start) = match self.roulette.clamp {
-            Some(clamp) => (RawMoments::constant(0.0), clamp + 1),
+            Some(clamp) => (Central::constant(0.0), clamp + 1),
             None => {
                 let settled = counted.settled().max(self.roulette.from + 2);
                 (self.fixed_point(settled, channel, counted), settled)
@@ -172,9 +172,9 @@ impl<'a> Walk<'a> {
         for bounce in (1..start).rev() {
             next = self.enclosure.average(&self.step(bounce, &next, channel, counted));
         }
-        let seen_directly = |(m, patch): (RawMoments, &Patch)| {
+        let seen_directly = |(m, patch): (Central, &Patch)| {
             let le = if self.explicit && counted.contains(0) { patch.emission[channel] } else { 0.0 };
-            m.plus(&RawMoments::constant(le))
+            m.plus(&Central::constant(le))
         };
         let first = self.step(0, &next, channel, counted);
         first.into_iter().zip(&self.enclosure.patches).map(seen_directly).collect()
@@ -238,11 +238,11 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// E U^n of the directional weight U: 1 for cosine sampling; for uniform sampling U = 2 cos θ, cos θ uniform on (0, 1).
-fn weight_moment(directions: Directions, order: u32) -> f64 {
+/// The directional weight U: 1 for cosine sampling; for uniform sampling 2 cos θ, which is uniform on (0, 2).
+fn weight(directions: Directions) -> Central {
     match directions {
-        Directions::Cosine => 1.0,
-        Directions::Uniform => power(2.0, order) / f64::from(order + 1),
+        Directions::Cosine => Central::constant(1.0),
+        Directions::Uniform => Central::new(1.0, [1.0 / 3.0, 0.0, 1.0 / 5.0]),
     }
 }
 
@@ -256,20 +256,20 @@ impl Enclosure {
     }
 
     /// Average over the patches.
-    pub fn average(&self, moments: &[RawMoments]) -> RawMoments {
+    pub fn average(&self, moments: &[Central]) -> Central {
         let weights = self.patches.iter().map(|p| p.fraction);
-        RawMoments::mixture(weights.zip(moments.iter().copied()))
+        Central::mixture(weights.zip(moments.iter().copied()))
     }
 
-    /// Raw moments of direct light divided by albedo: patch l is picked with probability p_l in proportion to its
+    /// Moments of direct light divided by albedo: patch l is picked with probability p_l in proportion to its
     /// power, and a point uniform over a sphere's patch then gives f_l Le_l / p_l without any variance.
-    fn direct(&self, channel: usize) -> RawMoments {
+    fn direct(&self, channel: usize) -> Central {
         let power = |p: &Patch| p.fraction * p.emission.element_sum();
         let total: f64 = self.patches.iter().map(power).sum();
         let lights = self.patches.iter().filter(|p| power(p) > 0.0);
-        RawMoments::mixture(lights.map(|p| {
+        Central::mixture(lights.map(|p| {
             let pick = power(p) / total;
-            (pick, RawMoments::constant(p.fraction * p.emission[channel] / pick))
+            (pick, Central::constant(p.fraction * p.emission[channel] / pick))
         }))
     }
 

@@ -13,7 +13,7 @@ use crate::estimator::{Estimate, Estimator, Property};
 use crate::scene::library::{Patch, SceneKind, View};
 use crate::scene::{LightSampling, Rgb};
 use enclosure::Walk;
-use moments::RawMoments;
+use moments::Central;
 use std::f64::consts::PI;
 
 /// What theory says of a central moment.
@@ -98,9 +98,9 @@ impl ClosedForm {
 
     /// The central moment of the given order (2, 3 or 4) of one sample.
     pub fn central(&self, channel: usize, counted: Counted, order: usize) -> Known {
-        match self.raw_moments(channel, counted) {
+        match self.moments(channel, counted) {
             Err(unknown) => unknown,
-            Ok(moments) => moments.central(order).map_or(Known::Infinite, Known::Value),
+            Ok(moments) => moments.finite_moment(order).map_or(Known::Infinite, Known::Value),
         }
     }
 
@@ -131,7 +131,7 @@ impl ClosedForm {
         Walk::new(&self.enclosure, &self.estimator)?.tail_index(channel)
     }
 
-    fn raw_moments(&self, channel: usize, counted: Counted) -> Result<RawMoments, Known> {
+    fn moments(&self, channel: usize, counted: Counted) -> Result<Central, Known> {
         if self.light_touches_walls() && counted != Counted::Only(0) {
             return Err(Known::Infinite);
         }

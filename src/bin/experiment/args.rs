@@ -1,0 +1,99 @@
+//! What can be typed.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Runs experiments on Monte Carlo light-transport estimators: is each one right, what does it cost, where is it wrong.
+///
+/// Exit status: 0 all claims held, 1 a claim failed or stayed inconclusive, 2 usage or input, 130 interrupted.
+#[derive(Parser)]
+#[command(name = "experiment", version, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Experiments to run: names in experiments/, or paths to .toml files
+    pub names: Vec<String>,
+    #[command(flatten)]
+    pub options: Options,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Every experiment: its question, cells, predicted rays and time
+    List,
+    /// The resolved grid and its predicted cost; samples nothing
+    Plan {
+        /// Experiments to plan
+        #[arg(required = true)]
+        names: Vec<String>,
+    },
+    /// Rebuilds CSV, plots and page from the stored cells; samples nothing
+    Report {
+        /// Experiments to report
+        #[arg(required = true)]
+        names: Vec<String>,
+    },
+    /// Renders one image, e.g. `experiment render cornell_box --estimator explicit --spp 64 -o out.exr`
+    Render(Render),
+}
+
+#[derive(Args)]
+pub struct Render {
+    /// cornell_box or cornell_empty
+    pub scene: String,
+    /// implicit or explicit
+    #[arg(long, default_value = "explicit")]
+    pub estimator: String,
+    /// Samples a pixel
+    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u64).range(2..))]
+    pub spp: u64,
+    /// Pixels along each edge
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub resolution: u32,
+    /// Where to write; a PNG preview goes beside it
+    #[arg(short, long, default_value = "out.exr")]
+    pub output: PathBuf,
+}
+
+#[derive(Args, Clone, Default)]
+pub struct Options {
+    /// Write to DIR/<name> instead of reports/<name>
+    #[arg(long, value_name = "DIR", global = true)]
+    pub out: Option<PathBuf>,
+    /// Another seed than the file's
+    #[arg(long, value_name = "N", global = true)]
+    pub seed: Option<u64>,
+    /// Threads; 0 = one for each core. Results do not depend on it
+    #[arg(short, long, value_name = "N", default_value_t = 0, global = true)]
+    pub jobs: usize,
+    /// A hundredth of the samples: shows that all works, decides little
+    #[arg(long, global = true)]
+    pub quick: bool,
+    /// Realizations of every cell
+    #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u64).range(1..))]
+    pub samples: Option<u64>,
+    /// Only cells whose label contains TEXT
+    #[arg(long, value_name = "TEXT", global = true)]
+    pub filter: Option<String>,
+    /// Change a value of the file: --set seed=7, --set grid.0.samples=100
+    #[arg(long, value_name = "PATH=VALUE", global = true)]
+    pub set: Vec<String>,
+    /// What goes to standard output
+    #[arg(long, value_enum, default_value_t = Format::Text, global = true)]
+    pub format: Format,
+    /// No progress, only results
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// Run cells that are out of proportion
+    #[arg(long, global = true)]
+    pub force: bool,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A table
+    #[default]
+    Text,
+    /// A JSON object an experiment, on one line
+    Json,
+}

@@ -1,0 +1,99 @@
+//! Finding and reading experiment files.
+
+use crate::args::Options;
+use furnace::experiment::{Error, Overrides, Plan};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Names that an experiment must not have, because they are commands.
+const COMMANDS: [&str; 5] = ["list", "plan", "report", "render", "help"];
+
+/// An experiment file with its text.
+pub struct Source {
+    pub name: String,
+    pub file: PathBuf,
+    pub text: String,
+    /// The folder that holds `experiments/`, or the present one.
+    root: PathBuf,
+}
+
+impl Source {
+    /// Finds an experiment by name, or by the path of its file, and reads it with the changes of `--set`.
+    pub fn read(wanted: &str, options: &Options) -> Result<Self, Error> {
+        let folder = folder();
+        let file = match &folder {
+            _ if wanted.ends_with(".toml") => PathBuf::from(wanted),
+            Some(folder) => folder.join(format!("{wanted}.toml")),
+            None => return Err(Error::UnknownExperiment { name: wanted.to_owned(), known: Vec::new() }),
+        };
+        if !wanted.ends_with(".toml") && !file.exists() {
+            return Err(Error::UnknownExperiment { name: wanted.to_owned(), known: names()? });
+        }
+        let text = fs::read_to_string(&file).map_err(|e| Error::io("cannot read", &file, e))?;
+        let name = file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        if COMMANDS.contains(&name.as_str()) {
+            return Err(Error::Refused(format!("{}: `{name}` is a command; rename the file", file.display())));
+        }
+        let text = options.set.iter().try_fold(text, |text, change| set(&file, &text, change))?;
+        let root = folder.and_then(|f| f.parent().map(Path::to_owned)).unwrap_or_default();
+        Ok(Source { name, file, text, root })
+    }
+
+    /// The resolved experiment.
+    pub fn plan(&self, options: &Options) -> Result<Plan, Error> {
+        let overrides = Overrides {
+            seed: options.seed,
+            samples: options.samples,
+            filter: options.filter.clone(),
+            quick: options.quick,
+            force: options.force,
+        };
+        Plan::new(&self.name, &self.file, &self.text, &overrides)
+    }
+
+    /// Where its results go.
+    pub fn report_folder(&self, options: &Options) -> PathBuf {
+        options.out.clone().unwrap_or_else(|| self.root.join("reports")).join(&self.name)
+    }
+}
+
+/// The nearest folder `experiments/`, from here upwards.
+fn folder() -> Option<PathBuf> {
+    let here = std::env::current_dir().ok()?;
+    let found = here.ancestors().map(|a| a.join("experiments")).find(|folder| folder.is_dir())?;
+    // shorter messages, where the folder is right here
+    Some(if found == here.join("experiments") { PathBuf::from("experiments") } else { found })
+}
+
+/// Names of all experiments, sorted.
+pub fn names() -> Result<Vec<String>, Error> {
+    let Some(folder) = folder() else { return Ok(Vec::new()) };
+    let entries = fs::read_dir(&folder).map_err(|e| Error::io("cannot read", &folder, e))?;
+    let mut names: Vec<String> = entries
+        .filter_map(|entry| entry.ok()?.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned))
+        .collect();
+    names.sort();
+    Ok(names)
+}
+
+/// Applies `path.to.key=value` to the text of a file; the value is TOML, or else a string.
+fn set(file: &Path, text: &str, change: &str) -> Result<String, Error> {
+    let refuse = |why: &str| Error::Refused(format!("--set {change}: {why}"));
+    let (path, value) = change.split_once('=').ok_or_else(|| refuse("expected path=value"))?;
+    let mut table: toml::Value = toml::from_str(text).map_err(|e| Error::toml(file, text, &e))?;
+    let parsed = toml::from_str::<toml::Table>(&format!("value = {value}"));
+    let value = parsed.ok().and_then(|mut t| t.remove("value"));
+    let value = value.unwrap_or_else(|| toml::Value::String(change[path.len() + 1..].to_owned()));
+    let mut place = &mut table;
+    for key in path.split('.') {
+        place = match (place, key.parse::<usize>()) {
+            (toml::Value::Array(items), Ok(i)) => {
+                items.get_mut(i).ok_or_else(|| refuse(&format!("there is no element {key}")))?
+            }
+            (toml::Value::Table(t), _) => t.entry(key).or_insert_with(|| toml::Value::Table(toml::Table::new())),
+            _ => return Err(refuse(&format!("`{key}` is not inside a table or list"))),
+        };
+    }
+    *place = value;
+    toml::to_string(&table).map_err(|e| refuse(&e.to_string()))
+}

@@ -1,0 +1,49 @@
+//! The command line: `experiment rr_sweep`.
+
+mod args;
+mod files;
+mod progress;
+mod render;
+mod run;
+
+use args::{Cli, Command};
+use clap::Parser;
+use furnace::experiment::Error;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// All claims held.
+const HELD: u8 = 0;
+/// A claim failed or stayed inconclusive.
+const NOT_HELD: u8 = 1;
+/// The input or the machine refused.
+const REFUSED: u8 = 2;
+/// Ctrl-C, with everything finished so far kept.
+const INTERRUPTED: u8 = 130;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let stop = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&stop);
+    if let Err(error) = ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed)) {
+        eprintln!("warning: Ctrl-C will lose what is finished: {error}");
+    }
+    match dispatch(&cli, &stop) {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(REFUSED)
+        }
+    }
+}
+
+fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
+    match &cli.command {
+        None => run::all(&cli.names, &cli.options, stop),
+        Some(Command::List) => run::list(&cli.options),
+        Some(Command::Plan { names }) => run::plans(names, &cli.options),
+        Some(Command::Report { names }) => run::reports(names, &cli.options),
+        Some(Command::Render(render)) => render::render(render, &cli.options, stop),
+    }
+}

@@ -1,0 +1,187 @@
+//! Running, planning, listing and reporting experiments.
+
+use crate::args::{Format, Options};
+use crate::files::{self, Source};
+use crate::progress::Progress;
+use crate::{HELD, INTERRUPTED, NOT_HELD};
+use furnace::experiment::plan::RAYS_PER_SECOND;
+use furnace::experiment::store::{self, Store, Stored};
+use furnace::experiment::{Cell, Error, Plan, Row, run_cell, verdict};
+use furnace::report::{self, Lookup, answer, table, terminal};
+use furnace::stats::Verdict;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Runs each named experiment; the worst exit status counts.
+pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    let sources = names.iter().map(|name| Source::read(name, options)).collect::<Result<Vec<_>, _>>()?;
+    // a mistake in the last file shall not cost the time of the first
+    let plans = sources.iter().map(|source| source.plan(options)).collect::<Result<Vec<_>, _>>()?;
+    let mut worst = HELD;
+    for (source, plan) in sources.iter().zip(&plans) {
+        worst = worst.max(one(source, plan, options, stop)?);
+        if stop.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    Ok(worst)
+}
+
+/// A pool of `--jobs` threads.
+pub fn pool(options: &Options) -> Result<rayon::ThreadPool, Error> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build();
+    pool.map_err(|e| Error::Refused(format!("cannot start {} threads: {e}", options.jobs)))
+}
+
+fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    let folder = source.report_folder(options);
+    let store = Store::open(&folder)?;
+    let (cells, seconds) = sample(plan, options, stop)?;
+    let rows = verdict::rows(plan, &cells);
+    store.write("timing.csv", &table::timing(plan, &cells, &seconds))?;
+    store.write("run.json", provenance(source, plan).as_bytes())?;
+    report::write(plan, &cells, &rows, &store, None)?;
+    let interrupted = cells.iter().any(Option::is_none);
+    let finished = cells.iter().filter(|cell| cell.is_some()).count();
+    store.write_cells(&Stored {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        spec: source.text.clone(),
+        labels: plan.cells.iter().map(|cell| plan.label(cell)).collect(),
+        cells,
+        seconds,
+    })?;
+    let partial = format!("{}-interrupted", source.name);
+    let folder = store.publish(interrupted.then_some(partial.as_str()))?;
+    print(plan, &rows, &folder, options);
+    if interrupted {
+        eprintln!(
+            "interrupted: {finished} of {} cells are finished and kept in {}",
+            plan.cells.len(),
+            folder.display()
+        );
+        return Ok(INTERRUPTED);
+    }
+    Ok(status(&rows))
+}
+
+/// The finished cells, and the seconds of each.
+fn sample(
+    plan: &Plan,
+    options: &Options,
+    stop: &AtomicBool,
+) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
+    let pool = pool(options)?;
+    let progress = Progress::new(plan, options.quiet || options.format == Format::Json);
+    let mut cells = Vec::new();
+    let mut seconds = Vec::new();
+    for (i, cell_plan) in plan.cells.iter().enumerate() {
+        let label = plan.label(cell_plan);
+        progress.cell(&label);
+        let start = Instant::now();
+        let cell = pool.install(|| run_cell(cell_plan, stop, &|rays| progress.rays(rays)));
+        seconds.push(start.elapsed().as_secs_f64());
+        if cell.is_some() {
+            progress.done(&label, i + 1, plan, seconds[i]);
+        }
+        cells.push(cell);
+    }
+    progress.finish();
+    Ok((cells, seconds))
+}
+
+fn status(rows: &[Row]) -> u8 {
+    let held = rows.iter().all(|row| row.verdict.is_none_or(|v| v == Verdict::Pass));
+    if held { HELD } else { NOT_HELD }
+}
+
+fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
+    let lookup = Lookup::new(plan, rows);
+    let sentences = answer::sentences(&lookup);
+    let page = folder.join("index.html");
+    if options.format == Format::Json {
+        let cell = |i: usize| {
+            let verdict = lookup.verdict(i).map(|v| v.to_string());
+            serde_json::json!({ "cell": plan.label(&plan.cells[i]), "verdict": verdict })
+        };
+        let cells: Vec<_> = (0..plan.cells.len()).filter(|&i| !lookup.cell(i).is_empty()).map(cell).collect();
+        let object = serde_json::json!({
+            "schema": 1, "experiment": plan.name, "answer": sentences, "cells": cells, "page": page,
+        });
+        println!("{object}");
+        return;
+    }
+    println!("{}", plan.spec.question);
+    println!();
+    println!("{}", terminal::table(&lookup));
+    sentences.iter().for_each(|sentence| println!("- {sentence}"));
+    println!("\nThe page: {}", page.display());
+}
+
+fn provenance(source: &Source, plan: &Plan) -> String {
+    let git = std::process::Command::new("git").args(["rev-parse", "HEAD"]).output();
+    let commit = git.ok().filter(|out| out.status.success());
+    let commit = commit.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned());
+    let object = serde_json::json!({
+        "experiment": source.name,
+        "spec": source.text,
+        "seed": plan.spec.seed,
+        "version": env!("CARGO_PKG_VERSION"),
+        "commit": commit,
+        "machine": { "architecture": std::env::consts::ARCH, "system": std::env::consts::OS,
+            "cores": std::thread::available_parallelism().map_or(0, usize::from) },
+    });
+    serde_json::to_string_pretty(&object).expect("a JSON value has a text") + "\n"
+}
+
+/// Rebuilds the reports of stored runs.
+pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
+    let mut worst = HELD;
+    for name in names {
+        let source = Source::read(name, options)?;
+        let plan = source.plan(options)?;
+        let folder = source.report_folder(options);
+        let stored = store::load(&folder, &plan)?;
+        let rows = verdict::rows(&plan, &stored.cells);
+        let store = Store::open(&folder)?;
+        for file in ["timing.csv", "run.json"] {
+            let path = folder.join(file);
+            let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
+            store.write(file, &text)?;
+        }
+        report::write(&plan, &stored.cells, &rows, &store, Some(&folder))?;
+        store.write_cells(&stored)?;
+        let folder = store.publish(None)?;
+        print(&plan, &rows, &folder, options);
+        worst = worst.max(status(&rows));
+    }
+    Ok(worst)
+}
+
+/// Prints the resolved grid of each experiment.
+pub fn plans(names: &[String], options: &Options) -> Result<u8, Error> {
+    for name in names {
+        let plan = Source::read(name, options)?.plan(options)?;
+        println!("{}: {}\n", plan.name, plan.spec.question);
+        for cell in &plan.cells {
+            println!("{:<64} {:>12} samples {:>10.2e} rays", plan.label(cell), cell.samples, cell.total_rays());
+        }
+        println!("{}", cost(&plan));
+    }
+    Ok(HELD)
+}
+
+/// Prints a paragraph on each experiment.
+pub fn list(options: &Options) -> Result<u8, Error> {
+    for name in files::names()? {
+        let plan = Source::read(&name, options)?.plan(options)?;
+        println!("{}: {}\n    {}", plan.name, plan.spec.question, cost(&plan));
+    }
+    Ok(HELD)
+}
+
+fn cost(plan: &Plan) -> String {
+    let rays: f64 = plan.cells.iter().map(|cell| cell.total_rays()).sum();
+    let seconds = rays / RAYS_PER_SECOND;
+    format!("{} cells, at most about {rays:.1e} rays, {seconds:.0} core-seconds", plan.cells.len())
+}

@@ -1,0 +1,117 @@
+//! Where results are kept: written beside the old ones and put in their place only when complete.
+
+use super::cell::Cell;
+use super::error::Error;
+use super::plan::Plan;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// The finished cells of a run, as stored in `cells.json`.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Stored {
+    /// Version of this program.
+    pub version: String,
+    /// The experiment file's text.
+    pub spec: String,
+    /// Labels of the cells, in the plan's order.
+    pub labels: Vec<String>,
+    /// The cells; `None` where the run was interrupted.
+    pub cells: Vec<Option<Cell>>,
+    /// Wall-clock seconds of each cell.
+    pub seconds: Vec<f64>,
+}
+
+/// A folder that receives a run's files.
+pub struct Store {
+    folder: PathBuf,
+    staging: TempDir,
+}
+
+/// What marks a folder as ours.
+const MARK: &str = "cells.json";
+
+impl Store {
+    /// Prepares to write `folder`; fails at once, before anything is sampled, if that cannot work.
+    pub fn open(folder: &Path) -> Result<Self, Error> {
+        let parent = folder.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::create_dir_all(parent).map_err(|e| Error::io("cannot create the output folder", parent, e))?;
+        if folder.exists() && !folder.join(MARK).exists() && !is_empty(folder) {
+            return Err(Error::Refused(format!(
+                "{} exists and holds no results of an experiment; it will not be overwritten, choose another --out",
+                folder.display()
+            )));
+        }
+        let staging = tempfile::Builder::new()
+            .prefix(".unfinished-")
+            .tempdir_in(parent)
+            .map_err(|e| Error::io("cannot write to the output folder", parent, e))?;
+        Ok(Store { folder: folder.to_owned(), staging })
+    }
+
+    /// Where files are written until [`Store::publish`].
+    pub fn path(&self) -> &Path {
+        self.staging.path()
+    }
+
+    /// Writes one file.
+    pub fn write(&self, name: &str, contents: &[u8]) -> Result<(), Error> {
+        let path = self.path().join(name);
+        fs::write(&path, contents).map_err(|e| Error::io("cannot write", &path, e))
+    }
+
+    /// Writes the cells.
+    pub fn write_cells(&self, stored: &Stored) -> Result<(), Error> {
+        let text = serde_json::to_vec(stored).expect("moments have a JSON form");
+        self.write(MARK, &text)
+    }
+
+    /// Puts the complete files in the place of older ones; `name` replaces the folder's own name, if given.
+    pub fn publish(self, name: Option<&str>) -> Result<PathBuf, Error> {
+        let folder = name.map_or(self.folder.clone(), |name| self.folder.with_file_name(name));
+        let staged = self.staging.keep();
+        readable(&staged).map_err(|e| Error::io("cannot set permissions of", &staged, e))?;
+        let old = staged.with_extension("old");
+        if folder.exists() {
+            fs::rename(&folder, &old).map_err(|e| Error::io("cannot replace", &folder, e))?;
+        }
+        fs::rename(&staged, &folder).map_err(|e| Error::io("cannot write", &folder, e))?;
+        if old.exists() {
+            fs::remove_dir_all(&old).map_err(|e| Error::io("cannot remove", &old, e))?;
+        }
+        Ok(folder)
+    }
+}
+
+/// The cells stored in `folder`, if they belong to `plan`.
+pub fn load(folder: &Path, plan: &Plan) -> Result<Stored, Error> {
+    let path = folder.join(MARK);
+    let text = fs::read_to_string(&path).map_err(|e| Error::io("cannot read", &path, e))?;
+    let stored: Stored = serde_json::from_str(&text)
+        .map_err(|e| Error::Refused(format!("{} is damaged: {e}", path.display())))?;
+    let labels: Vec<String> = plan.cells.iter().map(|cell| plan.label(cell)).collect();
+    if stored.labels != labels || stored.cells.len() != labels.len() {
+        return Err(Error::Refused(format!(
+            "{} holds other cells than {} plans now; run the experiment again",
+            path.display(),
+            plan.name
+        )));
+    }
+    Ok(stored)
+}
+
+fn is_empty(folder: &Path) -> bool {
+    fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none())
+}
+
+/// Temporary folders are private to their owner; results are not.
+fn readable(folder: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(folder, fs::Permissions::from_mode(0o755))?;
+    }
+    let _ = folder;
+    Ok(())
+}

@@ -1,0 +1,203 @@
+//! `index.html`: question, answer, verdicts, figures, images and numbers in one page that needs no network.
+
+use super::figure;
+use super::lookup::Lookup;
+use super::summary::{self, Line};
+use super::table;
+use crate::experiment::row::CHANNELS;
+use crate::experiment::spec::Claim;
+use crate::experiment::{Estimand, Row};
+use crate::stats::Verdict;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// A figure as the page shows it.
+pub struct Drawn {
+    /// File name without extension.
+    pub name: String,
+    /// The SVG.
+    pub svg: String,
+}
+
+/// An image as the page shows it.
+pub struct Picture {
+    /// What the cell is called.
+    pub label: String,
+    /// File name without extension.
+    pub name: String,
+    /// The PNG.
+    pub png: Vec<u8>,
+}
+
+/// The whole page.
+pub fn page(lookup: &Lookup<'_>, answer: &[String], figures: &[Drawn], pictures: &[Picture]) -> String {
+    let plan = lookup.plan;
+    let finished: Vec<usize> = (0..plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty()).collect();
+    let lines: Vec<Line> = finished.iter().map(|&c| summary::line(lookup, c)).collect();
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "furnace: " (plan.name) }
+                style { (PreEscaped(style())) }
+            }
+            body {
+                header {
+                    h1 { (plan.name) }
+                    p.question { (plan.spec.question) }
+                }
+                main {
+                    section {
+                        h2 { "Answer" }
+                        @if finished.len() < plan.cells.len() {
+                            p.warn { "Interrupted: " (finished.len()) " of " (plan.cells.len()) " cells finished." }
+                        }
+                        ul { @for sentence in answer { li { (sentence) } } }
+                    }
+                    section { h2 { "Verdicts" } (claims(lookup)) (verdicts(&lines)) }
+                    @if !figures.is_empty() {
+                        section { h2 { "Figures" } @for drawn in figures { (figure_block(drawn)) } }
+                    }
+                    @if !pictures.is_empty() {
+                        section { h2 { "Images" } (gallery(pictures)) }
+                    }
+                    section { h2 { "Numbers" } @for &cell in &finished { (numbers(lookup, cell)) } }
+                    section { h2 { "How to repeat this" } (provenance(lookup)) }
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+fn claims(lookup: &Lookup<'_>) -> Markup {
+    let about = |claim: &Claim| match claim {
+        Claim::Unbiased(l) => ("mean", l.scene.clone(), l.margin),
+        Claim::Tiles(l) => ("means of the image's 4 × 4 tiles", l.scene.clone(), l.margin),
+        Claim::Variance(l) => ("variance", l.scene.clone(), l.margin),
+        Claim::Cost(l) => ("rays a sample", l.scene.clone(), l.margin),
+        Claim::Agree { estimator, roulette, margin, .. } => {
+            ("mean, against another cell", Some(format!("{estimator}, {roulette}")), *margin)
+        }
+    };
+    html! {
+        ul {
+            @for claim in &lookup.plan.spec.claim {
+                @let (what, scope, margin) = about(claim);
+                li {
+                    (what) @if let Some(scope) = scope { " (" (scope) ")" }
+                    ": equivalent within " (100.0 * margin) " %, any false alarm with probability at most " (claim.alpha())
+                }
+            }
+        }
+        p {
+            "PASS: shown to lie within the margin. FAIL: shown to differ. INCONCLUSIVE: neither, with these samples. "
+            "INVALID: NaN, infinity, negative radiance or a runaway walk. No verdict: nothing is claimed, or the test's "
+            "conditions do not hold (the numbers below say why)."
+        }
+    }
+}
+
+fn verdicts(lines: &[Line]) -> Markup {
+    html! {
+        div.wide { table {
+            thead { tr {
+                th { "scene" } th { "estimator" } th { "rule" } th.n { "samples" } th.n { "bias [%] R G B" }
+                th.n { "smallest bias found [%]" } th.n { "rays" } th.n { "efficiency R G B" } th { "verdict" } th { "note" }
+            } }
+            tbody { @for line in lines { tr {
+                td { (line.scene) } td { (line.estimator) } td { (line.rule) } td.n { (line.samples) }
+                td.n { (line.bias) } td.n { (line.mde) } td.n { (line.rays) } td.n { (line.efficiency) }
+                td { (badge(line.verdict)) } td { (line.note) }
+            } } }
+        } }
+    }
+}
+
+fn badge(verdict: Option<Verdict>) -> Markup {
+    let class = match verdict {
+        Some(Verdict::Pass) => "pass",
+        Some(Verdict::Fail | Verdict::Invalid) => "fail",
+        Some(Verdict::Inconclusive) => "open",
+        None => "none",
+    };
+    html! { span class={ "badge " (class) } { @if let Some(v) = verdict { (v) } @else { "–" } } }
+}
+
+fn figure_block(drawn: &Drawn) -> Markup {
+    html! {
+        figure {
+            (PreEscaped(&drawn.svg))
+            figcaption { a href={ (drawn.name) ".svg" } { "SVG" } " · " a href={ (drawn.name) ".png" } { "PNG" } }
+        }
+    }
+}
+
+fn gallery(pictures: &[Picture]) -> Markup {
+    html! {
+        p { "Same exposure for all pictures; the EXR files hold mean, variance, bias against the reference, samples." }
+        div.gallery { @for picture in pictures {
+            figure {
+                img src={ "data:image/png;base64," (STANDARD.encode(&picture.png)) } alt=(picture.label);
+                figcaption { (picture.label) " · " a href={ (picture.name) ".exr" } { "EXR" } }
+            }
+        } }
+    }
+}
+
+/// All rows of one cell, folded away.
+fn numbers(lookup: &Lookup<'_>, cell: usize) -> Markup {
+    html! {
+        details {
+            summary { (lookup.plan.label(&lookup.plan.cells[cell])) " " (badge(lookup.verdict(cell))) }
+            div.wide { table {
+                thead { tr {
+                    th { "estimand" } th { "channel" } th.n { "measured" } th.n { "std. error" } th.n { "right" }
+                    th.n { "expected bias" } th.n { "bias" } th.n { "interval of the bias" } th.n { "p" }
+                    th.n { "smallest bias found" } th { "verdict" } th { "source, note" }
+                } }
+                tbody { @for row in lookup.cell(cell) { (number_row(row)) } }
+            } }
+        }
+    }
+}
+
+fn number_row(row: &Row) -> Markup {
+    let n = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:.6}"));
+    let small = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:.2e}"));
+    let index = row.estimand.index().map_or_else(String::new, |i| table::index(row.estimand, i));
+    let precise = !matches!(row.estimand, Estimand::Zeros);
+    html! {
+        tr {
+            td { (row.estimand) " " (index) } td { @if let Some(c) = row.channel { (CHANNELS[c]) } }
+            td.n { (n(Some(row.mean))) } td.n { (small(row.std_error)) } td.n { (n(row.truth)) }
+            td.n { (small(row.expected_bias)) } td.n { (small(row.bias)) }
+            td.n { @if let Some((low, high)) = row.ci { (format!("{low:+.2e} … {high:+.2e}")) } }
+            td.n { (small(row.p_value)) } td.n { (small(row.mde)) }
+            td { @if precise { (badge(row.verdict)) } } td { (row.source) " " (row.note) }
+        }
+    }
+}
+
+fn provenance(lookup: &Lookup<'_>) -> Markup {
+    let plan = lookup.plan;
+    html! {
+        pre { "cargo run --bin experiment " (plan.name) " -- --seed " (plan.spec.seed) }
+        p {
+            "furnace " (env!("CARGO_PKG_VERSION")) ", seed " (plan.spec.seed) ". The same bytes for any number of threads. "
+            a href="results.csv" { "results.csv" } ", " a href="timing.csv" { "timing.csv" } ", "
+            a href="run.json" { "run.json" } "."
+        }
+    }
+}
+
+fn style() -> String {
+    let font = STANDARD.encode(figure::WOFF2);
+    format!(
+        "@font-face{{font-family:'Furnace Sans';src:url(data:font/woff2;base64,{font}) format('woff2')}}{}",
+        include_str!("page.css")
+    )
+}

@@ -1,0 +1,218 @@
+//! Which figures an experiment gets: quantities over a swept parameter with theory's curves, efficiency as bars, bias
+//! against the margin.
+
+use super::curves::{self, Curve};
+use super::figure::{Axis, Colour, Figure, Marker, Mark, Panel, Point, Series, Style};
+use super::lookup::Lookup;
+use crate::experiment::row::CHANNELS;
+use crate::experiment::spec::{Claim, Plot, Quantity};
+use crate::experiment::{CellPlan, Estimand};
+
+/// A figure and the name of its files.
+pub struct Named {
+    /// File name without extension.
+    pub name: String,
+    /// The figure.
+    pub figure: Figure,
+}
+
+/// Error bars are drawn for this probability, two-sided normal.
+pub const Z_BAR: f64 = 3.290_526_731_491_9; // 99.9 %
+
+/// All figures of a run.
+pub fn figures(lookup: &Lookup<'_>) -> Vec<Named> {
+    let mut figures = Vec::new();
+    for plot in &lookup.plan.spec.plot {
+        match plot {
+            Plot::Over { parameter, show, series, log } => {
+                for cells in curves::groups(lookup, parameter, series) {
+                    figures.push(over(lookup, &cells, parameter, show, series, *log));
+                }
+            }
+            Plot::Bars { scene } => figures.extend(bars(lookup, scene)),
+            Plot::Bias {} => figures.extend(lookup.scenes().iter().filter_map(|scene| bias(lookup, scene))),
+        }
+    }
+    figures
+}
+
+/// A name that every file system takes.
+pub fn file_name(parts: &[&str]) -> String {
+    let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let name: String = parts.join("_").chars().map(keep).collect();
+    name.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
+}
+
+fn title(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Bias => "Bias",
+        Quantity::Variance => "Variance",
+        Quantity::Cost => "Cost",
+        Quantity::Efficiency => "Efficiency",
+        Quantity::Zeros => "Paths that return zero",
+    }
+}
+
+fn axis(quantity: Quantity) -> Axis {
+    match quantity {
+        Quantity::Bias => Axis::linear("bias / truth  [%]"),
+        Quantity::Variance => Axis::log("variance of one sample  [(W m⁻² sr⁻¹)²]"),
+        Quantity::Cost => Axis::log("rays a sample"),
+        Quantity::Efficiency => Axis::log("1 / (variance × rays)  [(W m⁻² sr⁻¹)⁻²]"),
+        Quantity::Zeros => Axis::linear("share of paths  [%]"),
+    }
+}
+
+fn over(
+    lookup: &Lookup<'_>,
+    cells: &[usize],
+    parameter: &str,
+    show: &[Quantity],
+    series: &str,
+    log: bool,
+) -> Named {
+    let curves = curves::of(lookup, cells, parameter, series);
+    let first = &lookup.plan.cells[cells[0]];
+    let subject = subject(first, series);
+    let mut panels = Vec::new();
+    for &quantity in show {
+        let x = if log { Axis::log(parameter) } else { Axis::linear(parameter) };
+        let mut panel = Panel { title: title(quantity).to_owned(), x, y: axis(quantity), ..Panel::default() };
+        for (i, curve) in curves.iter().enumerate() {
+            draw(lookup, &mut panel, curve, i, quantity, parameter);
+        }
+        panels.push(panel);
+    }
+    let columns = panels.len().min(3);
+    let shown = show.iter().map(|&q| title(q).to_lowercase()).collect::<Vec<_>>().join(", ");
+    Named {
+        name: file_name(&[&subject, parameter]),
+        figure: Figure {
+            title: format!("{subject}: {shown} over {parameter}"),
+            alt: format!("Measured {shown} with 99.9 % intervals over {parameter}; dashed: closed form."),
+            panels,
+            columns,
+        },
+    }
+}
+
+/// What all cells of a figure share.
+fn subject(cell: &CellPlan, series: &str) -> String {
+    let estimator = if series == "estimator" { "" } else { cell.estimator_label.as_str() };
+    let parts = [cell.scene_label.as_str(), estimator, cell.roulette_label.as_str()];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+/// Adds one curve's measured points, theory and marks to a panel.
+fn draw(
+    lookup: &Lookup<'_>,
+    panel: &mut Panel,
+    curve: &Curve,
+    i: usize,
+    quantity: Quantity,
+    parameter: &str,
+) {
+    let label = curve.label.clone();
+    let theory = curves::theory(lookup, curve, quantity, parameter);
+    if !theory.is_empty() {
+        let style = [Style::Dashed, Style::Dotted, Style::DashDotted][i % 3];
+        panel.series.push(Series { label: label.clone(), colour: curve.colour, style, points: theory });
+    }
+    let points = curves::measured(lookup, curve, quantity, parameter);
+    let style = Style::Markers(Marker::nth(i));
+    panel.series.push(Series { label, colour: curve.colour, style, points });
+    if parameter == "q" && quantity != Quantity::Cost {
+        panel.regions.extend(curves::infinite_region(lookup, curve));
+    }
+    if parameter == "q" && quantity == Quantity::Efficiency {
+        panel.marks.extend(curves::optimum(lookup, curve));
+    }
+}
+
+/// Efficiency of every unbiased cell of a scene, by rule.
+fn bars(lookup: &Lookup<'_>, scene: &str) -> Vec<Named> {
+    let cells = lookup.of_scene(scene);
+    let Some(&first) = cells.first() else { return Vec::new() };
+    let kinds: &[(Estimand, &str, Colour)] = if lookup.is_image(first) {
+        &[
+            (Estimand::MedianPixelVariance, "median pixel", Colour::Blue),
+            (Estimand::PixelVariance, "mean pixel (99.9 % bars)", Colour::Orange),
+        ]
+    } else {
+        &[(Estimand::Mean, "all channels (99.9 % bars)", Colour::Blue)]
+    };
+    let shown: Vec<usize> = cells
+        .into_iter()
+        .filter(|&c| lookup.plan.cells[c].is_unbiased() && lookup.efficiency(c, kinds[0].0).is_some())
+        .collect();
+    let names = shown.iter().map(|&c| short(lookup, c)).collect();
+    let series = kinds.iter().map(|&(estimand, label, colour)| {
+        let bar = |(x, &cell): (usize, &usize)| {
+            let (value, error) = lookup.efficiency(cell, estimand)?;
+            let reach = Z_BAR * error.unwrap_or(0.0);
+            Some(Point::between(x as f64, value, value - reach, value + reach))
+        };
+        let points = shown.iter().enumerate().filter_map(bar).collect();
+        Series { label: label.to_owned(), colour, style: Style::Bars, points }
+    });
+    let panel = Panel {
+        x: Axis::categories("", names),
+        y: Axis::log("1 / (variance × rays), variances of the channels added"),
+        series: series.collect(),
+        ..Panel::default()
+    };
+    let figure = Figure {
+        title: format!("{scene}: efficiency by termination rule"),
+        alt: format!("Efficiency of each unbiased estimator and rule in {scene}."),
+        panels: vec![panel],
+        columns: 1,
+    };
+    vec![Named { name: file_name(&[scene, "efficiency"]), figure }]
+}
+
+/// Estimator and rule.
+fn short(lookup: &Lookup<'_>, cell: usize) -> String {
+    let plan = &lookup.plan.cells[cell];
+    format!("{}, {}", plan.estimator_label, lookup.plan.rule_label(plan))
+}
+
+/// Relative bias of every judged unbiased cell of a scene, with its simultaneous interval.
+fn bias(lookup: &Lookup<'_>, scene: &str) -> Option<Named> {
+    let judged = |&c: &usize| {
+        let has_interval = |channel| lookup.row(c, Estimand::Mean, Some(channel)).is_some_and(|r| r.ci.is_some());
+        lookup.plan.cells[c].is_unbiased() && (0..3).any(has_interval)
+    };
+    let cells: Vec<usize> = lookup.of_scene(scene).into_iter().filter(judged).collect();
+    if cells.is_empty() {
+        return None;
+    }
+    let names = cells.iter().map(|&c| short(lookup, c)).collect();
+    let series = (0..3).map(|channel| {
+        let point = |(x, &cell): (usize, &usize)| {
+            let row = lookup.row(cell, Estimand::Mean, Some(channel))?;
+            let scale = 100.0 / row.truth?;
+            let (low, high) = row.ci?;
+            Some(Point::between(x as f64, row.bias? * scale, low * scale, high * scale))
+        };
+        let points = cells.iter().enumerate().filter_map(point).collect();
+        let (label, colour) = (CHANNELS[channel].to_owned(), curves::CHANNEL_COLOURS[channel]);
+        Series { label, colour, style: Style::Markers(Marker::nth(channel)), points }
+    });
+    let limits = lookup.plan.spec.claim.iter().filter_map(Claim::unbiased).find(|l| l.covers(scene))?;
+    let margin = 100.0 * limits.margin;
+    let line = |at: f64, label: &str| Mark::Horizontal { at, label: label.to_owned(), colour: Colour::Black };
+    let panel = Panel {
+        x: Axis::categories("", names),
+        y: Axis::linear("bias / truth  [%]"),
+        marks: vec![line(margin, &format!("margin ±{margin} %")), line(-margin, "")],
+        series: series.collect(),
+        ..Panel::default()
+    };
+    let figure = Figure {
+        title: format!("{scene}: bias of the unbiased estimators"),
+        alt: format!("Relative bias with simultaneous intervals, against the margin of {margin} %."),
+        panels: vec![panel],
+        columns: 1,
+    };
+    Some(Named { name: file_name(&[scene, "bias"]), figure })
+}

@@ -1,0 +1,87 @@
+//! `results.csv`, tidy: one row for each cell x estimand x channel. And `timing.csv`, apart from it, because seconds
+//! differ from run to run and results do not.
+
+use crate::experiment::row::CHANNELS;
+use crate::experiment::{Cell, Estimand, Plan, Row};
+use crate::estimator::BINS;
+
+/// The text of `results.csv`.
+pub fn results(plan: &Plan, rows: &[Row]) -> Vec<u8> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    let fixed = ["experiment", "scene", "estimator", "roulette"];
+    let measured = [
+        "estimand", "bounce", "channel", "samples", "mean", "std_error", "variance", "truth", "truth_error",
+        "truth_source", "bias", "expected_bias", "ci_low", "ci_high", "e_value", "p_value", "mde", "verdict",
+        "rays_per_sample", "efficiency", "efficiency_error", "note",
+    ];
+    let swept = plan.swept.iter().map(String::as_str);
+    csv.write_record(fixed.into_iter().chain(swept).chain(measured)).expect("a Vec takes all");
+    for row in rows {
+        csv.write_record(record(plan, row)).expect("a Vec takes all");
+    }
+    csv.into_inner().expect("a Vec takes all")
+}
+
+fn record(plan: &Plan, row: &Row) -> Vec<String> {
+    let cell = &plan.cells[row.cell];
+    let mut record =
+        vec![plan.name.clone(), cell.scene_label.clone(), cell.estimator_label.clone(), cell.roulette_label.clone()];
+    record.extend(plan.swept.iter().map(|name| number(cell.params.get(name).copied())));
+    record.extend([
+        row.estimand.to_string(),
+        row.estimand.index().map_or_else(String::new, |i| index(row.estimand, i)),
+        row.channel.map_or_else(String::new, |c| CHANNELS[c].to_owned()),
+        row.samples.to_string(),
+        number(Some(row.mean)),
+        number(row.std_error),
+        number(row.variance),
+        number(row.truth),
+        number(row.truth_error),
+        row.source.to_owned(),
+        number(row.bias),
+        number(row.expected_bias),
+        number(row.ci.map(|ci| ci.0)),
+        number(row.ci.map(|ci| ci.1)),
+        String::new(), // e-processes do not decide yet
+        number(row.p_value),
+        number(row.mde),
+        row.verdict.map_or_else(String::new, |verdict| verdict.to_string()),
+        number(row.rays),
+        number(row.efficiency),
+        number(row.efficiency_error),
+        row.note.clone(),
+    ]);
+    record
+}
+
+/// "3", or "8+" for the bin of all later bounces; a tile's number.
+pub fn index(estimand: Estimand, i: usize) -> String {
+    let is_tail = !matches!(estimand, Estimand::Tile(_)) && i + 1 == BINS;
+    if is_tail { format!("{i}+") } else { i.to_string() }
+}
+
+/// Shortest digits that read back to the same number.
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |v| format!("{v:?}"))
+}
+
+/// The text of `timing.csv`.
+pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64]) -> Vec<u8> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    csv.write_record(["experiment", "cell", "realizations", "rays", "seconds", "rays_per_second"])
+        .expect("a Vec takes all");
+    for ((cell_plan, cell), seconds) in plan.cells.iter().zip(cells).zip(seconds) {
+        let Some(cell) = cell else { continue };
+        let rays = cell.cost.mean * cell.cost.n as f64;
+        let record = [
+            plan.name.clone(),
+            plan.label(cell_plan),
+            cell.cost.n.to_string(),
+            format!("{rays:.0}"),
+            format!("{seconds:.4}"),
+            format!("{:.0}", rays / seconds),
+        ];
+        csv.write_record(record).expect("a Vec takes all");
+    }
+    csv.into_inner().expect("a Vec takes all")
+}

@@ -1,0 +1,175 @@
+//! Estimators that find light in unlike ways must find the same light: bounce by bounce, in total, and that of an
+//! independent renderer. Mistakes that a closed form in a symmetric scene cannot show (visibility, distances, cosines,
+//! the choice among lights) differ between them.
+//!
+//! False alarms: about 3000 Welch tests; one of them all fails by chance with probability [`ALPHA`], as each is done at
+//! ALPHA / [`TESTS`].
+
+use furnace::estimator::{BINS, Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use furnace::experiment::{Cell, sample};
+use furnace::sampling::Address;
+use furnace::scene::camera::Pinhole;
+use furnace::scene::geometry::{Disk, Rectangle, SpherePatch, Triangle};
+use furnace::scene::library::{Primitive, SceneKind};
+use furnace::scene::{Directions, LightSampling, Rgb, Sensor, Shape};
+use furnace::stats::Moments;
+use furnace::stats::student::{two_sided_p, welch_df};
+use furnace::truth::{Reference, reference};
+use glam::DVec3;
+
+const ALPHA: f64 = 1e-9;
+const TESTS: f64 = 4000.0;
+const BLOCKS: u64 = 128;
+
+/// A mean with its standard error and that error's degrees of freedom.
+#[derive(Clone, Copy)]
+struct Mean(f64, f64, f64);
+
+impl From<&Moments> for Mean {
+    fn from(blocks: &Moments) -> Self {
+        Mean(blocks.mean, blocks.std_error().unwrap(), blocks.n as f64 - 1.0)
+    }
+}
+
+#[track_caller]
+fn agree(what: &str, a: Mean, b: Mean) {
+    let (distance, error) = (a.0 - b.0, a.1.hypot(b.1));
+    if error == 0.0 {
+        return assert_eq!(distance, 0.0, "{what}"); // bounces beyond a clamp
+    }
+    let p = two_sided_p(distance / error, welch_df(a.1, a.2, b.1, b.2));
+    assert!(p > ALPHA / TESTS, "{what}: {} ± {} and {} ± {}, p = {p:e}", a.0, a.1, b.0, b.1);
+}
+
+fn explicit(lights: LightSampling, directions: Directions, roulette: Roulette) -> Estimator {
+    Estimator::Explicit(Explicit { lights, directions, roulette })
+}
+
+/// Throughput roulette bounds throughput whatever directions are drawn, so that variances are finite.
+const THROUGHPUT: Roulette = Roulette { rule: Rule::Throughput { floor: 0.05 }, from: 2, clamp: None };
+
+fn unbiased() -> Vec<Estimator> {
+    let mut all = Vec::new();
+    for directions in [Directions::Cosine, Directions::Uniform] {
+        all.push(Estimator::Implicit(Implicit { directions, roulette: THROUGHPUT }));
+        all.push(explicit(LightSampling::Area, directions, THROUGHPUT));
+        all.push(explicit(LightSampling::SolidAngle, directions, THROUGHPUT));
+    }
+    all
+}
+
+fn clamped() -> Vec<Estimator> {
+    let (roulette, directions) = (Roulette::depth_clamp(3), Directions::Cosine);
+    vec![
+        Estimator::Implicit(Implicit { directions, roulette }),
+        Estimator::Recursive(Recursive { samples: 2, directions, roulette }),
+        Estimator::Recursive(Recursive { samples: 3, directions: Directions::Uniform, roulette }),
+        explicit(LightSampling::SolidAngle, directions, roulette),
+    ]
+}
+
+fn cells(scene: &SceneKind, estimators: Vec<Estimator>, passes: u64) -> Vec<(Estimator, Cell)> {
+    let built = scene.build();
+    let cell = |estimator: &Estimator| {
+        let address = Address::of(&["estimators_agree", &format!("{scene:?} {estimator:?}")]);
+        let cell = sample(&built, estimator, &address, BLOCKS * passes, passes);
+        assert_eq!(cell.invalid(), None);
+        cell
+    };
+    estimators.into_iter().map(|e| (e, cell(&e))).collect()
+}
+
+/// All pairs, bounce by bounce up to `last`, and in total.
+fn all_pairs_agree(cells: &[(Estimator, Cell)], last: usize, with_total: bool) {
+    for (i, (one, a)) in cells.iter().enumerate() {
+        for (other, b) in &cells[..i] {
+            for c in 0..3 {
+                for bounce in 0..=last {
+                    let what = format!("bounce {bounce}, channel {c} of {one:?} and {other:?}");
+                    agree(&what, (&a.bounces[bounce][c]).into(), (&b.bounces[bounce][c]).into());
+                }
+                if with_total {
+                    let what = format!("channel {c} of {one:?} and {other:?}");
+                    agree(&what, (&a.blocks[c]).into(), (&b.blocks[c]).into());
+                }
+            }
+        }
+    }
+}
+
+fn cornell(scene: SceneKind) {
+    let stored = Reference::of(&scene).unwrap().image();
+    let (unbiased, clamped) = (cells(&scene, unbiased(), 1), cells(&scene, clamped(), 1));
+    all_pairs_agree(&unbiased, BINS - 1, true);
+    all_pairs_agree(&clamped, BINS - 1, true);
+    let both: Vec<_> = unbiased.iter().chain(&clamped).cloned().collect();
+    all_pairs_agree(&both, 3, false); // up to the clamp nothing is left out
+    for (estimator, cell) in &unbiased {
+        for c in 0..3 {
+            let right = Mean(stored.mean[c], stored.std_error[c], reference::DF);
+            agree(&format!("{estimator:?} and the reference"), (&cell.blocks[c]).into(), right);
+        }
+    }
+    // the sharpest of them sees a difference of 3 % at the stated level: 1e-9/4000 are 7.4 standard errors
+    let sharpest = &unbiased
+        .iter()
+        .find(|(e, _)| *e == explicit(LightSampling::SolidAngle, Directions::Cosine, THROUGHPUT));
+    let (_, cell) = sharpest.unwrap();
+    (0..3).for_each(|c| assert!(7.4 * cell.blocks[c].std_error().unwrap() < 0.03 * cell.blocks[c].mean));
+}
+
+#[test]
+fn in_the_cornell_box() {
+    cornell(SceneKind::CornellBox { resolution: 32 });
+}
+
+#[test]
+fn in_the_empty_cornell_box() {
+    cornell(SceneKind::CornellEmpty { resolution: 32 });
+}
+
+/// A room of two walls and a floor, with a light of every shape, of unequal sizes, colours and albedos: a rectangle, a
+/// disk that is tilted, a triangle, a whole sphere, and a disk that turns its black back to the walls. One reflecting
+/// sphere casts shadows. Nothing that shines touches anything, so that the variance is finite for area sampling too.
+fn odd_lights() -> SceneKind {
+    let at = DVec3::new;
+    let one = |shape, albedo, emission| Primitive { shape, albedo, emission };
+    let wall = |center, half_u, half_v| Shape::Rectangle(Rectangle { center, half_u, half_v });
+    let ball = |center, radius| {
+        Shape::Sphere(SpherePatch { center, radius, axis: DVec3::Z, low: -1.0, high: 1.0, inward: false })
+    };
+    let disk =
+        |center, normal: DVec3, radius| Shape::Disk(Disk { center, normal: normal.normalize(), radius });
+    let (a, b, c) = (at(-1.5, 2.2, 0.4), at(-1.2, 1.4, 0.9), at(-0.4, 2.0, 0.3));
+    let primitives = vec![
+        one(wall(at(0.0, 0.0, 0.0), 2.0 * DVec3::Z, 2.0 * DVec3::X), Rgb::new(0.8, 0.7, 0.5), Rgb::ZERO),
+        one(wall(at(0.0, 1.5, -1.2), 2.0 * DVec3::X, 1.5 * DVec3::Y), Rgb::new(0.3, 0.6, 0.8), Rgb::ZERO),
+        one(wall(at(-2.0, 1.5, 0.0), 1.5 * DVec3::Y, 2.0 * DVec3::Z), Rgb::new(0.7, 0.2, 0.2), Rgb::ZERO),
+        one(ball(at(0.4, 0.6, 0.1), 0.5), Rgb::new(0.6, 0.6, 0.9), Rgb::ZERO),
+        one(
+            wall(at(0.6, 2.3, 0.2), 0.5 * DVec3::X, 0.4 * DVec3::Z),
+            Rgb::new(0.5, 0.1, 0.3),
+            at(3.0, 2.0, 0.5),
+        ),
+        one(disk(at(1.3, 1.1, -0.5), at(-1.0, 0.2, 0.3), 0.45), Rgb::ZERO, at(0.4, 4.0, 1.0)),
+        one(Shape::Triangle(Triangle { a, b, c }), Rgb::splat(0.4), at(1.0, 0.2, 6.0)),
+        one(ball(at(-0.9, 0.5, 0.5), 0.25), Rgb::new(0.2, 0.7, 0.2), at(2.0, 3.0, 4.0)),
+        one(disk(at(-0.3, 1.2, -0.7), DVec3::Z, 0.3), Rgb::splat(0.5), at(5.0, 0.3, 0.1)),
+    ];
+    let eye = at(1.2, 1.6, 4.5);
+    let camera = Pinhole::new(eye, at(-0.1, 1.0, 0.0) - eye, DVec3::Y, 45.0, (16, 16));
+    SceneKind::Custom { primitives, sensor: Sensor::Camera(camera) }
+}
+
+#[test]
+fn among_lights_of_every_shape() {
+    let cells = cells(&odd_lights(), unbiased(), 8);
+    all_pairs_agree(&cells, BINS - 1, true);
+    for (estimator, cell) in &cells {
+        for c in 0..3 {
+            // each sees differences of 4 %, of bounce 1 alone, at the stated level
+            let bounce = &cell.bounces[1][c];
+            assert!(7.4 * bounce.std_error().unwrap() < 0.04 * bounce.mean, "{estimator:?}, channel {c}");
+        }
+    }
+}
