@@ -45,7 +45,9 @@ fn paths(c: &mut Criterion) {
             let rays = block.tally.rays as f64 / paths as f64;
             eprintln!("{scene_name} {name}: {rays:.3} rays a path, mean {:.5}", block.total[0].mean);
             group.throughput(Throughput::Elements(paths));
-            group.bench_function(BenchmarkId::new(name, scene_name), |b| b.iter(|| black_box(run()).tally.rays));
+            group.bench_function(BenchmarkId::new(name, scene_name), |b| {
+                b.iter(|| black_box(run()).tally.rays)
+            });
         }
     }
     group.finish();

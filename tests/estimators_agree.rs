@@ -2,10 +2,11 @@
 //! independent renderer. Mistakes that a closed form in a symmetric scene cannot show (visibility, distances, cosines,
 //! the choice among lights) differ between them.
 //!
-//! False alarms: about 3000 Welch tests; one of them all fails by chance with probability [`ALPHA`], as each is done at
-//! ALPHA / [`TESTS`].
+//! False alarms: about 1500 tests, each beyond [`LIMIT`] standard errors of both means with probability 1e-14 or less, as
+//! only means are compared that are known to 5 %: light that is found by chance and rarely, as late bounces are by
+//! implicit estimators, is no matter for a t test. Together 2e-11.
 
-use furnace::estimator::{BINS, Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use furnace::estimator::{Estimate, Estimator, Explicit, Implicit, Property, Recursive, Roulette, Rule};
 use furnace::experiment::{Cell, sample};
 use furnace::sampling::Address;
 use furnace::scene::camera::Pinhole;
@@ -13,32 +14,28 @@ use furnace::scene::geometry::{Disk, Rectangle, SpherePatch, Triangle};
 use furnace::scene::library::{Primitive, SceneKind};
 use furnace::scene::{Directions, LightSampling, Rgb, Sensor, Shape};
 use furnace::stats::Moments;
-use furnace::stats::student::{two_sided_p, welch_df};
-use furnace::truth::{Reference, reference};
+use furnace::truth::Reference;
 use glam::DVec3;
 
-const ALPHA: f64 = 1e-9;
-const TESTS: f64 = 4000.0;
+const LIMIT: f64 = 10.0;
 const BLOCKS: u64 = 128;
 
-/// A mean with its standard error and that error's degrees of freedom.
+/// A mean with its standard error.
 #[derive(Clone, Copy)]
-struct Mean(f64, f64, f64);
+struct Mean(f64, f64);
 
 impl From<&Moments> for Mean {
     fn from(blocks: &Moments) -> Self {
-        Mean(blocks.mean, blocks.std_error().unwrap(), blocks.n as f64 - 1.0)
+        Mean(blocks.mean, blocks.std_error().unwrap())
     }
 }
 
-#[track_caller]
 fn agree(what: &str, a: Mean, b: Mean) {
-    let (distance, error) = (a.0 - b.0, a.1.hypot(b.1));
-    if error == 0.0 {
-        return assert_eq!(distance, 0.0, "{what}"); // bounces beyond a clamp
+    for mean in [a, b] {
+        assert!(mean.1 <= 0.05 * mean.0, "{what}: {} ± {} is too uncertain to be compared", mean.0, mean.1);
     }
-    let p = two_sided_p(distance / error, welch_df(a.1, a.2, b.1, b.2));
-    assert!(p > ALPHA / TESTS, "{what}: {} ± {} and {} ± {}, p = {p:e}", a.0, a.1, b.0, b.1);
+    let t = (a.0 - b.0) / a.1.hypot(b.1);
+    assert!(t.abs() <= LIMIT || a.0 == b.0, "{what}: {} ± {} and {} ± {}, t = {t}", a.0, a.1, b.0, b.1);
 }
 
 fn explicit(lights: LightSampling, directions: Directions, roulette: Roulette) -> Estimator {
@@ -63,7 +60,7 @@ fn clamped() -> Vec<Estimator> {
     vec![
         Estimator::Implicit(Implicit { directions, roulette }),
         Estimator::Recursive(Recursive { samples: 2, directions, roulette }),
-        Estimator::Recursive(Recursive { samples: 3, directions: Directions::Uniform, roulette }),
+        Estimator::Recursive(Recursive { samples: 3, directions, roulette }),
         explicit(LightSampling::SolidAngle, directions, roulette),
     ]
 }
@@ -72,6 +69,8 @@ fn cells(scene: &SceneKind, estimators: Vec<Estimator>, passes: u64) -> Vec<(Est
     let built = scene.build();
     let cell = |estimator: &Estimator| {
         let address = Address::of(&["estimators_agree", &format!("{scene:?} {estimator:?}")]);
+        // light that is found by chance takes more samples; they cost less
+        let passes = if matches!(estimator, Estimator::Implicit(_)) { 2 * passes } else { passes };
         let cell = sample(&built, estimator, &address, BLOCKS * passes, passes);
         assert_eq!(cell.invalid(), None);
         cell
@@ -79,19 +78,26 @@ fn cells(scene: &SceneKind, estimators: Vec<Estimator>, passes: u64) -> Vec<(Est
     estimators.into_iter().map(|e| (e, cell(&e))).collect()
 }
 
-/// All pairs, bounce by bounce up to `last`, and in total.
-fn all_pairs_agree(cells: &[(Estimator, Cell)], last: usize, with_total: bool) {
+/// The last bounce that an estimator finds often enough in a scene where next-event estimation finds those up to `last`.
+fn reach(estimator: &Estimator, last: usize) -> usize {
+    match (estimator, estimator.property()) {
+        (Estimator::Implicit(e), _) => 1 + usize::from(e.directions == Directions::Cosine),
+        (_, Property::Clamped { bounces }) => bounces as usize,
+        (_, Property::Unbiased) => last,
+    }
+}
+
+/// All pairs bounce by bounce, and in total where both leave out the same bounces.
+fn all_pairs_agree(cells: &[(Estimator, Cell)], last: usize) {
     for (i, (one, a)) in cells.iter().enumerate() {
-        for (other, b) in &cells[..i] {
-            for c in 0..3 {
-                for bounce in 0..=last {
-                    let what = format!("bounce {bounce}, channel {c} of {one:?} and {other:?}");
-                    agree(&what, (&a.bounces[bounce][c]).into(), (&b.bounces[bounce][c]).into());
-                }
-                if with_total {
-                    let what = format!("channel {c} of {one:?} and {other:?}");
-                    agree(&what, (&a.blocks[c]).into(), (&b.blocks[c]).into());
-                }
+        for ((other, b), c) in cells[..i].iter().flat_map(|other| [0, 1, 2].map(|c| (other, c))) {
+            for bounce in 0..=reach(one, last).min(reach(other, last)) {
+                let what = format!("bounce {bounce}, channel {c} of {one:?} and {other:?}");
+                agree(&what, (&a.bounces[bounce][c]).into(), (&b.bounces[bounce][c]).into());
+            }
+            if one.property() == other.property() {
+                let what = format!("channel {c} of {one:?} and {other:?}");
+                agree(&what, (&a.blocks[c]).into(), (&b.blocks[c]).into());
             }
         }
     }
@@ -100,22 +106,17 @@ fn all_pairs_agree(cells: &[(Estimator, Cell)], last: usize, with_total: bool) {
 fn cornell(scene: SceneKind) {
     let stored = Reference::of(&scene).unwrap().image();
     let (unbiased, clamped) = (cells(&scene, unbiased(), 1), cells(&scene, clamped(), 1));
-    all_pairs_agree(&unbiased, BINS - 1, true);
-    all_pairs_agree(&clamped, BINS - 1, true);
-    let both: Vec<_> = unbiased.iter().chain(&clamped).cloned().collect();
-    all_pairs_agree(&both, 3, false); // up to the clamp nothing is left out
     for (estimator, cell) in &unbiased {
         for c in 0..3 {
-            let right = Mean(stored.mean[c], stored.std_error[c], reference::DF);
+            let right = Mean(stored.mean[c], stored.std_error[c]);
             agree(&format!("{estimator:?} and the reference"), (&cell.blocks[c]).into(), right);
         }
     }
-    // the sharpest of them sees a difference of 3 % at the stated level: 1e-9/4000 are 7.4 standard errors
-    let sharpest = &unbiased
-        .iter()
-        .find(|(e, _)| *e == explicit(LightSampling::SolidAngle, Directions::Cosine, THROUGHPUT));
-    let (_, cell) = sharpest.unwrap();
-    (0..3).for_each(|c| assert!(7.4 * cell.blocks[c].std_error().unwrap() < 0.03 * cell.blocks[c].mean));
+    for (_, cell) in &clamped {
+        assert!(cell.bounces[4..].iter().flatten().all(|late| late.mean == 0.0 && late.m2 == 0.0));
+    }
+    let all: Vec<_> = unbiased.into_iter().chain(clamped).collect();
+    all_pairs_agree(&all, 5);
 }
 
 #[test]
@@ -163,13 +164,5 @@ fn odd_lights() -> SceneKind {
 
 #[test]
 fn among_lights_of_every_shape() {
-    let cells = cells(&odd_lights(), unbiased(), 8);
-    all_pairs_agree(&cells, BINS - 1, true);
-    for (estimator, cell) in &cells {
-        for c in 0..3 {
-            // each sees differences of 4 %, of bounce 1 alone, at the stated level
-            let bounce = &cell.bounces[1][c];
-            assert!(7.4 * bounce.std_error().unwrap() < 0.04 * bounce.mean, "{estimator:?}, channel {c}");
-        }
-    }
+    all_pairs_agree(&cells(&odd_lights(), unbiased(), 6), 3);
 }

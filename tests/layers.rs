@@ -77,10 +77,20 @@ fn layer(path: &Path) -> String {
     path.components().next().unwrap().as_os_str().to_string_lossy().trim_end_matches(".rs").to_string()
 }
 
-/// Lines of code with their numbers: no comments, and nothing from the unit tests at a file's end on.
-fn code(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let lines = text.lines().take_while(|line| *line != "#[cfg(test)]");
-    (1..).zip(lines).filter(|(_, line)| !line.trim_start().starts_with("//"))
+/// Lines of code with their numbers: no comments, and no item that is compiled for unit tests only.
+fn code(text: &str) -> Vec<(usize, &str)> {
+    let (mut lines, mut skips) = (Vec::new(), false);
+    for (number, line) in (1..).zip(text.lines()) {
+        if line == "#[cfg(test)]" {
+            skips = true;
+        } else if skips {
+            // up to the item's end, `}` or `;` in the first column's indentation
+            skips = !(line == "}" || line.ends_with(';') && !line.starts_with(' '));
+        } else if !line.trim_start().starts_with("//") {
+            lines.push((number, line));
+        }
+    }
+    lines
 }
 
 /// The module that each `crate::` of a line names. Several at once, `crate::{`, would hide from this: they come back

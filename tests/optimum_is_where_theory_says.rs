@@ -66,6 +66,25 @@ fn a_very_small_light() {
     is(best_constant_q(&scene, &implicit(Directions::Cosine), 0).unwrap(), 0.68, 0.36);
 }
 
+/// In a sphere of several materials the variance is infinite up to q = <rho^2> (K = <rho^2/q> >= 1), channel by channel.
+#[test]
+fn infinite_variance_begins_where_k_is_one() {
+    let patch = |fraction, albedo, emission| Patch { fraction, albedo, emission };
+    let patches = vec![
+        patch(0.3, Rgb::new(0.9, 0.5, 0.3), Rgb::ZERO),
+        patch(0.5, Rgb::new(0.3, 0.2, 0.8), Rgb::new(5.0, 1.0, 0.2)),
+        patch(0.2, Rgb::ZERO, Rgb::ONE),
+    ];
+    let mean_square = |c: usize| patches.iter().map(|p| p.fraction * p.albedo[c] * p.albedo[c]).sum::<f64>();
+    let scene =
+        SceneKind::IntegratingSphere { patches: patches.clone(), looks_at: 0, view: View::Irradiance };
+    for (estimator, c) in
+        [implicit(Directions::Cosine), explicit()].into_iter().flat_map(|e| [0, 1, 2].map(|c| (e, c)))
+    {
+        near(best_constant_q(&scene, &estimator, c).unwrap().infinite_up_to, mean_square(c), 1e-12);
+    }
+}
+
 /// q* = (4 - 2 sqrt(1 - rho^2))/3, and infinite variance up to 4 rho^2/3.
 #[test]
 fn uniform_directions_in_the_furnace() {

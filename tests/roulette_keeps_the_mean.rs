@@ -52,8 +52,8 @@ fn unbiased(scene: &SceneKind, estimator: &Estimator, block: u64, expected: Rgb,
         let (mean, se) = (cell.blocks[c].mean, cell.blocks[c].std_error().unwrap().hypot(error[c]));
         let t = (mean - expected[c]) / se;
         assert!(t.abs() < LIMIT, "{estimator:?} in {scene:?}: {mean} instead of {}, t = {t}", expected[c]);
-        // power: 8 standard errors are a bias that matters
-        assert!(LIMIT * se < 0.12 * expected[c], "{estimator:?} in {scene:?} is too noisy: {se} of {mean}");
+        // power: a bias of 20 % is seen; survivors that are weighted wrongly change each later bounce by a factor
+        assert!(LIMIT * se < 0.2 * expected[c], "{estimator:?} in {scene:?} is too noisy: {se} of {mean}");
     }
 }
 
@@ -79,7 +79,7 @@ fn where_there_is_a_closed_form() {
             continue;
         }
         let right = [0, 1, 2].map(|c| form.truth(c, Counted::All));
-        unbiased(scene, &estimator, 256, Rgb::from_array(right), Rgb::ZERO);
+        unbiased(scene, &estimator, 96, Rgb::from_array(right), Rgb::ZERO);
     }
     // light sampled over the area of the box, whose walls touch: two kinds of directions under each rule
     assert_eq!(infinite, 2 * RULES.len());
@@ -97,7 +97,7 @@ fn in_the_cornell_box() {
         // with q = .45 and an albedo of .89 the second moment is infinite for one walk
         let small_q = estimator.roulette().rule == RULES[0] && !matches!(estimator, Estimator::Recursive(_));
         if !small_q && (bounded || directions(&estimator) == Directions::Cosine) {
-            let passes = if matches!(estimator, Estimator::Recursive(_)) { 20 } else { 8 };
+            let passes = if matches!(estimator, Estimator::Explicit(_)) { 8 } else { 14 };
             unbiased(&scene, &estimator, passes, stored.mean, stored.std_error);
         }
     }

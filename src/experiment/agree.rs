@@ -4,7 +4,7 @@ use super::cell::Cell;
 use super::plan::{CellPlan, Plan};
 use super::row::{Estimand, Row};
 use super::spec::Claim;
-use super::verdict::{Asked, MIN_EFFECTIVE, about};
+use super::verdict::{Asked, MIN_EFFECTIVE};
 use crate::estimator::BINS;
 use crate::stats::{Moments, Question};
 
@@ -19,7 +19,8 @@ pub(super) fn compare(plan: &Plan, cells: &[Option<Cell>], rows: &mut Vec<Row>, 
             let invalid = cell.invalid().or_else(|| anchor.invalid());
             for channel in 0..3 {
                 let margin = margin * anchor.blocks[channel].mean.abs();
-                let bounce = |bin: usize| (Estimand::AgreeBounce(bin), &cell.bounces[bin], &anchor.bounces[bin]);
+                let bounce =
+                    |bin: usize| (Estimand::AgreeBounce(bin), &cell.bounces[bin], &anchor.bounces[bin]);
                 let bounces = (0..BINS).map(bounce);
                 let pairs = std::iter::once((Estimand::Agree, &cell.blocks, &anchor.blocks)).chain(bounces);
                 for (estimand, ours, theirs) in pairs {
@@ -77,9 +78,8 @@ fn effective(blocks: &Moments) -> f64 {
 }
 
 fn difference(ours: &Moments, theirs: &Moments, margin: f64, invalid: Option<String>) -> Question {
-    let question = about(ours, invalid, theirs.mean, margin);
+    let question = Question::about(ours, invalid, theirs.mean, margin);
     let expected_std_error = theirs.std_error().unwrap_or(f64::NAN);
     let noise_free = question.std_error == 0.0 && expected_std_error == 0.0;
     Question { expected_std_error, expected_df: theirs.n as f64 - 1.0, noise_free, ..question }
 }
-

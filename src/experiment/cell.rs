@@ -149,7 +149,7 @@ impl Cell {
             values.sort_by(f64::total_cmp);
             0.5 * (values[(values.len() - 1) / 2] + values[values.len() / 2])
         });
-        if pixels.width % TILES == 0 && pixels.height % TILES == 0 {
+        if pixels.width.is_multiple_of(TILES) && pixels.height.is_multiple_of(TILES) {
             self.tiles = (0..TILES * TILES).map(|tile| pixels.tile(tile % TILES, tile / TILES)).collect();
         }
     }

@@ -55,9 +55,7 @@ pub fn scenes(spec: &SceneSpec) -> Result<Vec<Choice<SceneKind>>, String> {
         SceneSpec::IntegratingSphere(s) => {
             points("light_fraction", &s.light_fraction).map(|p| integrating_sphere(s, p)).collect()
         }
-        SceneSpec::CornellBox(c) => {
-            plain("cornell_box", SceneKind::CornellBox { resolution: c.resolution })
-        }
+        SceneSpec::CornellBox(c) => plain("cornell_box", SceneKind::CornellBox { resolution: c.resolution }),
         SceneSpec::CornellEmpty(c) => {
             plain("cornell_empty", SceneKind::CornellEmpty { resolution: c.resolution })
         }
@@ -75,16 +73,15 @@ fn bounded(albedo: Rgb, emission: Rgb) -> Result<(), String> {
     Ok(())
 }
 
-fn integrating_sphere(
-    s: &SphereSpec,
-    light: (&'static str, f64, bool),
-) -> Result<Choice<SceneKind>, String> {
+fn integrating_sphere(s: &SphereSpec, light: (&'static str, f64, bool)) -> Result<Choice<SceneKind>, String> {
     let patch = |fraction, albedo, emission| Patch { fraction, albedo, emission };
     let mut patches = vec![patch(light.1, s.light_albedo, s.emission)];
     patches.extend(s.patches.iter().map(|p| patch(p.fraction, p.albedo, p.emission)));
     let taken: f64 = patches.iter().map(|p| p.fraction).sum();
     if taken >= 1.0 {
-        return Err(format!("the light and the patches cover {taken} of the sphere; leave some for the wall"));
+        return Err(format!(
+            "the light and the patches cover {taken} of the sphere; leave some for the wall"
+        ));
     }
     patches.push(patch(1.0 - taken, s.wall_albedo, Rgb::ZERO));
     let mean = |f: &dyn Fn(&Patch) -> Rgb| patches.iter().map(|p| p.fraction * f(p)).sum::<Rgb>();
@@ -102,9 +99,8 @@ fn primitives(p: &PrimitivesSpec) -> Result<SceneKind, String> {
     if p.primitives.is_empty() {
         return Err("a scene needs at least one primitive".to_owned());
     }
-    let primitive = |s: &PrimitiveSpec| {
-        Ok(Primitive { shape: shape(&s.shape)?, albedo: s.albedo, emission: s.emission })
-    };
+    let primitive =
+        |s: &PrimitiveSpec| Ok(Primitive { shape: shape(&s.shape)?, albedo: s.albedo, emission: s.emission });
     let sensor = match p.sensor {
         SensorSpec::Probe { origin, direction } => Sensor::Probe { origin, direction },
         SensorSpec::Irradiance { point, normal } => Sensor::Irradiance { point, normal, on: None },
@@ -223,6 +219,10 @@ pub fn roulettes(spec: &RouletteSpec) -> Vec<Choice<Roulette>> {
         from.into_iter().chain(clamp.map(|clamp| format!("clamp={clamp}"))).collect::<Vec<_>>()
     };
     match *spec {
+        RouletteSpec::None {} => {
+            let roulette = Roulette::unclamped(Rule::None);
+            vec![Choice::new("none", &[], Vec::new(), roulette)]
+        }
         RouletteSpec::DepthClamp { ref bounces } => {
             let one = |p: (&'static str, f64, bool)| {
                 Choice::new("clamp", &[], vec![p], Roulette::depth_clamp(p.1 as u32))

@@ -31,7 +31,10 @@ pub fn resolve(spec: &Spec, file: &Path, source: &str) -> Result<(Vec<CellPlan>,
         grid_cells(spec, grid, &at, &mut cells, &mut swept)?;
     }
     if cells.is_empty() {
-        return Err(Error::Refused(format!("{}: an empty list of grids leaves nothing to run", file.display())));
+        return Err(Error::Refused(format!(
+            "{}: an empty list of grids leaves nothing to run",
+            file.display()
+        )));
     }
     Ok((cells, swept))
 }
@@ -53,8 +56,9 @@ fn grid_cells(
                 let whole = estimator.choice.value.with(roulette.choice.value);
                 lit(&whole, &built).map_err(|e| at(scene.span.clone(), e))?;
                 ends(&whole, &built).map_err(|e| at(roulette.span.clone(), e))?;
-                let params =
-                    [&scene.choice.params, &estimator.choice.params, &roulette.choice.params].into_iter().flatten();
+                let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
+                    .into_iter()
+                    .flatten();
                 for &(name, _, is_swept) in params.clone() {
                     if is_swept && !swept.iter().any(|s| s == name) {
                         swept.push(name.to_owned());
@@ -115,13 +119,18 @@ fn ends(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
         return Ok(());
     }
     Err(match roulette.rule {
-        Rule::None => "a walk without roulette cannot end in a closed scene; use depth_clamp".to_owned(),
+        Rule::None => {
+            "a walk without roulette cannot end in a closed scene; use depth_clamp = { bounces = 16 }, say"
+                .to_owned()
+        }
         Rule::Constant { q } => {
             format!("with q = {q} a walk in a closed scene cannot end; use q < 1 or add clamp = 16, say")
         }
-        Rule::Albedo | Rule::Throughput { .. } => "this scene has a surface of albedo 1, on which this rule never \
+        Rule::Albedo | Rule::Throughput { .. } => {
+            "this scene has a surface of albedo 1, on which this rule never \
              ends a walk; use a constant q < 1 or add clamp = 16, say"
-            .to_owned(),
+                .to_owned()
+        }
     })
 }
 

@@ -79,7 +79,8 @@ struct PerChannel(Rgb);
 
 impl<'de> Deserialize<'de> for Sweep {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let values = deserializer.deserialize_any(NumbersVisitor("a number, or a list of numbers to sweep"))?;
+        let values =
+            deserializer.deserialize_any(NumbersVisitor("a number, or a list of numbers to sweep"))?;
         if values.is_empty() {
             return Err(D::Error::custom("an empty list leaves nothing to run; give at least one number"));
         }

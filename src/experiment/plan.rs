@@ -201,7 +201,7 @@ fn wanted_samples(cell: &CellPlan, limits: &Limits, questions: usize) -> Option<
     let z = student::quantile(1.0 - limits.alpha / questions as f64, f64::INFINITY) + Z_POWER;
     let needed = |channel| {
         let variance = closed.central(channel, Counted::All, 2).value()?;
-        let margin = limits.margin * closed.expected(channel, Counted::All);
+        let margin = limits.margin * closed.truth(channel, Counted::All);
         (margin > 0.0).then(|| z * z * variance / (margin * margin))
     };
     (0..3).filter_map(needed).reduce(f64::max).map(|n| n.ceil() as u64)

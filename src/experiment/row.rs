@@ -127,6 +127,16 @@ impl Row {
         }
     }
 
+    /// States the efficiency, with its standard error by the relative error of the variance.
+    pub fn rate(&mut self, variance_error: Option<f64>) {
+        let (Some(variance), Some(rays)) = (self.variance, self.rays) else { return };
+        if variance > 0.0 {
+            let efficiency = 1.0 / (variance * rays);
+            self.efficiency = Some(efficiency);
+            self.efficiency_error = variance_error.map(|error| efficiency * error / variance);
+        }
+    }
+
     /// States the right value and what this estimator is expected to make of it.
     pub fn against(&mut self, truth: f64, truth_error: f64, expected: Option<f64>, source: &'static str) {
         self.truth = Some(truth);

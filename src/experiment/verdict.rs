@@ -101,22 +101,6 @@ pub(super) fn counted(bin: usize) -> Counted {
     if bin + 1 == BINS { Counted::From(bin as u32) } else { Counted::Only(bin as u32) }
 }
 
-/// A question about the mean of blocks.
-pub(super) fn about(blocks: &Moments, invalid: Option<String>, expected: f64, margin: f64) -> Question {
-    Question {
-        mean: blocks.mean,
-        std_error: blocks.std_error().unwrap_or(f64::NAN),
-        df: blocks.n as f64 - 1.0,
-        expected,
-        expected_std_error: 0.0,
-        expected_df: f64::INFINITY,
-        systematic: 0.0,
-        margin,
-        noise_free: false,
-        invalid,
-    }
-}
-
 impl Subject<'_> {
     fn row(&self, estimand: Estimand, channel: Option<usize>, mean: f64) -> Row {
         Row::new(self.index, estimand, channel, self.cell.cost.n, mean)
@@ -148,13 +132,13 @@ impl Subject<'_> {
         } else {
             row.std_error = blocks.std_error();
             row.variance = total.variance();
-            efficiency(&mut row, total.variance_std_error());
+            row.rate(total.variance_std_error());
         }
         let question = if let Some(closed) = self.closed {
             let (truth, expected) =
                 (closed.truth(channel, Counted::All), closed.expected(channel, Counted::All));
             row.against(truth, 0.0, Some(expected), "closed form");
-            let mut question = about(blocks, self.cell.invalid(), expected, expected.abs());
+            let mut question = Question::about(blocks, self.cell.invalid(), expected, truth.abs());
             question.noise_free = known == Known::Value(0.0);
             let legal = known != Known::Infinite && self.enough(&mut row, channel, closed);
             legal.then_some(question)
@@ -187,7 +171,7 @@ impl Subject<'_> {
             expected_std_error: stored.std_error[channel],
             expected_df: reference::DF,
             systematic: stored.systematic[channel],
-            ..about(blocks, self.cell.invalid(), stored.mean[channel], stored.mean[channel].abs())
+            ..Question::about(blocks, self.cell.invalid(), stored.mean[channel], stored.mean[channel].abs())
         }
     }
 
@@ -203,7 +187,7 @@ impl Subject<'_> {
         row.against(truth, 0.0, Some(expected), "closed form");
         let variance = closed.central(channel, counted, 2);
         let effective = variance.value().map(|v| self.cell.cost.n as f64 * expected * expected / v);
-        let mut question = about(blocks, self.cell.invalid(), expected, 0.0);
+        let mut question = Question::about(blocks, self.cell.invalid(), expected, 0.0);
         question.noise_free = variance == Known::Value(0.0);
         row.note = match (variance, effective) {
             (Known::Infinite, _) => "infinite variance: not judged".to_owned(),
@@ -218,7 +202,7 @@ impl Subject<'_> {
         let legal = row.note.is_empty();
         sheet.state(row);
         if let (Some((claim, margin)), true) = (sheet.claim(Claim::unbiased), legal) {
-            question.margin = margin * closed.expected(channel, Counted::All).abs();
+            question.margin = margin * closed.truth(channel, Counted::All).abs();
             sheet.ask(claim, question);
         }
     }
@@ -235,7 +219,7 @@ impl Subject<'_> {
         }
         sheet.state(row);
         if let (Some((claim, margin)), Some(rays)) = (sheet.claim(Claim::cost), rays) {
-            let mut question = about(cost, self.cell.invalid(), rays, margin * rays);
+            let mut question = Question::about(cost, self.cell.invalid(), rays, margin * rays);
             question.noise_free = self.plan.estimator.roulette().rule == Rule::None;
             sheet.ask(claim, question);
         }
@@ -247,14 +231,16 @@ impl Subject<'_> {
     fn variance(&self, channel: usize, sheet: &mut Sheet<'_>) {
         let Some(closed) = self.closed else { return };
         let central = |order| closed.central(channel, Counted::All, order);
-        let (Some(variance), Some(expected)) = (self.cell.total[channel].variance(), central(2).value()) else {
+        let (Some(variance), Some(expected)) = (self.cell.total[channel].variance(), central(2).value())
+        else {
             return; // the row of the mean says why
         };
         let mut row = self.row(Estimand::Variance, Some(channel), variance);
         row.against(expected, 0.0, Some(expected), "closed form");
         let n = self.cell.cost.n as f64;
         let fourth = central(4);
-        let error = fourth.value().map(|mu4| ((mu4 - expected * expected * (n - 3.0) / (n - 1.0)) / n).sqrt());
+        let error =
+            fourth.value().map(|mu4| ((mu4 - expected * expected * (n - 3.0) / (n - 1.0)) / n).sqrt());
         row.std_error = error;
         if fourth == Known::Infinite {
             row.note = "infinite fourth moment: the variance has no interval, not judged".to_owned();
@@ -262,7 +248,7 @@ impl Subject<'_> {
         sheet.state(row);
         let claim = sheet.claim(Claim::variance);
         if let (Some((claim, margin)), Some(std_error), true) = (claim, error, expected > 0.0) {
-            let question = about(&self.cell.total[channel], self.cell.invalid(), expected, 0.0);
+            let question = Question::about(&self.cell.total[channel], self.cell.invalid(), expected, 0.0);
             let (df, margin) = (f64::INFINITY, margin * expected);
             sheet.ask(claim, Question { mean: variance, std_error, df, margin, ..question });
         }
@@ -280,13 +266,13 @@ impl Subject<'_> {
             row.std_error = moments.std_error();
             row.variance = Some(moments.mean);
             row.rays = Some(rays);
-            efficiency(&mut row, moments.std_error());
+            row.rate(moments.std_error());
             sheet.state(row);
             let mut row =
                 self.row(Estimand::MedianPixelVariance, Some(channel), self.cell.median_variance[channel]);
             row.variance = Some(row.mean);
             row.rays = Some(rays);
-            efficiency(&mut row, None);
+            row.rate(None);
             sheet.state(row);
         }
         if let Some(reference) = Reference::of(&self.plan.scene) {
@@ -311,15 +297,5 @@ impl Subject<'_> {
                 sheet.ask(claim, Question { mean, std_error, margin: margin * expected, ..question });
             }
         }
-    }
-}
-
-/// 1 / (variance x rays) with its standard error, by the relative error of the variance.
-fn efficiency(row: &mut Row, variance_error: Option<f64>) {
-    let (Some(variance), Some(rays)) = (row.variance, row.rays) else { return };
-    if variance > 0.0 {
-        let value = 1.0 / (variance * rays);
-        row.efficiency = Some(value);
-        row.efficiency_error = variance_error.map(|error| value * error / variance);
     }
 }

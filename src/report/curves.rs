@@ -3,7 +3,7 @@
 use super::figure::{Colour, Mark, Point, Region};
 use super::lookup::Lookup;
 use super::plots::Z_BAR;
-use crate::estimator::{Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use crate::estimator::{BINS, Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
 use crate::experiment::row::CHANNELS;
 use crate::experiment::spec::Quantity;
 use crate::experiment::{CellPlan, Estimand};
@@ -44,7 +44,12 @@ pub fn groups(lookup: &Lookup<'_>, parameter: &str, series: &str) -> Vec<Vec<usi
 fn key(cell: &CellPlan, without: &[&str]) -> String {
     let estimator = if without.contains(&"estimator") { "" } else { &cell.estimator_label };
     let params = cell.params.iter().filter(|(name, _)| !without.contains(&name.as_str()));
-    format!("{}|{estimator}|{}|{params:?}", cell.scene_label, cell.roulette_label, params = params.collect::<Vec<_>>())
+    format!(
+        "{}|{estimator}|{}|{params:?}",
+        cell.scene_label,
+        cell.roulette_label,
+        params = params.collect::<Vec<_>>()
+    )
 }
 
 /// The curves of one figure.
@@ -117,13 +122,20 @@ pub fn measured(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, paramete
             }
             Quantity::Cost => (row(Estimand::Cost, None)?.mean, row(Estimand::Cost, None)?.std_error?),
             Quantity::Efficiency => (mean.efficiency?, mean.efficiency_error.unwrap_or(0.0)),
+            Quantity::Added => {
+                let bin = last_bounce(&lookup.plan.cells[cell])?;
+                let last = row(Estimand::Bounce(bin), Some(curve.channel))?;
+                let scale = 100.0 / mean.truth?;
+                (last.mean * scale, last.std_error? * scale)
+            }
             Quantity::Zeros => {
                 let zeros = row(Estimand::Zeros, None)?;
                 let error = (zeros.mean * (1.0 - zeros.mean) / zeros.samples as f64).sqrt();
                 (100.0 * zeros.mean, 100.0 * error)
             }
         };
-        let noise_free = matches!(quantity, Quantity::Variance | Quantity::Efficiency) && mean.std_error == Some(0.0);
+        let noise_free =
+            matches!(quantity, Quantity::Variance | Quantity::Efficiency) && mean.std_error == Some(0.0);
         (!noise_free).then(|| Point::between(x, y, y - Z_BAR * error, y + Z_BAR * error))
     };
     curve.cells.iter().filter_map(point).collect()
@@ -134,7 +146,8 @@ pub fn theory(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, parameter:
     let plan = |cell: usize| &lookup.plan.cells[cell];
     let at = |x: f64, cell: &CellPlan, estimator: &Estimator| {
         let closed = ClosedForm::of(&cell.scene, estimator)?;
-        Some(Point::new(x, predicted(&closed, quantity, curve.channel)?))
+        let last = last_bounce(cell).map(|bin| bin as u32);
+        Some(Point::new(x, predicted(&closed, quantity, curve.channel, last)?))
     };
     if parameter != "q" {
         let point = |&cell: &usize| at(value(lookup, cell, parameter), plan(cell), &plan(cell).estimator);
@@ -158,7 +171,7 @@ fn with_q(estimator: &Estimator, q: f64) -> Estimator {
     }
 }
 
-fn predicted(closed: &ClosedForm, quantity: Quantity, channel: usize) -> Option<f64> {
+fn predicted(closed: &ClosedForm, quantity: Quantity, channel: usize, last: Option<u32>) -> Option<f64> {
     let variance = || closed.central(channel, Counted::All, 2).value().filter(|&v| v > 0.0);
     match quantity {
         Quantity::Variance => variance(),
@@ -168,8 +181,18 @@ fn predicted(closed: &ClosedForm, quantity: Quantity, channel: usize) -> Option<
             let truth = closed.truth(channel, Counted::All);
             Some(100.0 * (closed.expected(channel, Counted::All) - truth) / truth)
         }
+        Quantity::Added => {
+            let last = closed.expected(channel, Counted::Only(last?));
+            Some(100.0 * last / closed.truth(channel, Counted::All))
+        }
         Quantity::Zeros => None,
     }
+}
+
+/// The last bounce that a clamped cell counts, if it has a bin of its own.
+fn last_bounce(cell: &CellPlan) -> Option<usize> {
+    let clamp = cell.estimator.roulette().clamp?;
+    Some(clamp as usize).filter(|&bin| bin + 1 < BINS)
 }
 
 /// What theory says of constant q here.
@@ -198,6 +221,11 @@ pub fn optimum(lookup: &Lookup<'_>, curve: &Curve) -> Option<Mark> {
     let x = optimum.best?;
     let closed = ClosedForm::of(&cell.scene, &with_q(&cell.estimator, x))?;
     debug_assert!(closed.central(curve.channel, Counted::All, 2) != Known::Infinite);
-    let y = predicted(&closed, Quantity::Efficiency, curve.channel)?;
-    Some(Mark::Point { x, y, label: format!("best q = {x:.3} ({})", CHANNELS[curve.channel]), colour: curve.colour })
+    let y = predicted(&closed, Quantity::Efficiency, curve.channel, None)?;
+    Some(Mark::Point {
+        x,
+        y,
+        label: format!("best q = {x:.3} ({})", CHANNELS[curve.channel]),
+        colour: curve.colour,
+    })
 }

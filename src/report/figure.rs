@@ -78,37 +78,23 @@ pub struct Axis {
 impl Axis {
     /// A linear axis whose range is taken from the data.
     pub fn linear(label: &str) -> Self {
-        Self {
-            label: label.to_string(),
-            ..Self::default()
-        }
+        Self { label: label.to_string(), ..Self::default() }
     }
 
     /// A logarithmic axis whose range is taken from the data.
     pub fn log(label: &str) -> Self {
-        Self {
-            label: label.to_string(),
-            scale: Scale::Log,
-            ..Self::default()
-        }
+        Self { label: label.to_string(), scale: Scale::Log, ..Self::default() }
     }
 
     /// An axis of named positions 0, 1, 2, …
     pub fn categories(label: &str, names: Vec<String>) -> Self {
-        Self {
-            label: label.to_string(),
-            categories: names,
-            ..Self::default()
-        }
+        Self { label: label.to_string(), categories: names, ..Self::default() }
     }
 
     /// The same axis from `low` to `high`.
     #[must_use]
     pub fn within(self, low: f64, high: f64) -> Self {
-        Self {
-            range: Some((low, high)),
-            ..self
-        }
+        Self { range: Some((low, high)), ..self }
     }
 }
 
@@ -197,10 +183,7 @@ pub enum FigureError {
 pub fn write(figure: &Figure, stem: &Path) -> Result<String, FigureError> {
     let svg = svg(figure)?;
     save(with_ending(stem, ".svg"), svg.as_bytes())?;
-    save(
-        with_ending(stem, ".png"),
-        &paint::png(&sheet::draw(figure))?,
-    )?;
+    save(with_ending(stem, ".png"), &paint::png(&sheet::draw(figure))?)?;
     Ok(svg)
 }
 

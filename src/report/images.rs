@@ -39,11 +39,11 @@ pub fn write_exr(path: &Path, pixels: &Pixels, scene: &SceneKind) -> exr::error:
 /// Mean less reference at the reference's resolution, spread over our pixels; `None` if the grids do not match.
 fn bias(pixels: &Pixels, scene: &SceneKind) -> Option<Vec<Rgb>> {
     let reference = Reference::of(scene)?;
-    let edge = pixels.width as usize / reference.size;
-    if edge == 0 || pixels.width != pixels.height || pixels.width as usize % reference.size != 0 {
+    let width = pixels.width as usize;
+    let edge = width / reference.size;
+    if edge * reference.size != width || pixels.width != pixels.height {
         return None;
     }
-    let width = pixels.width as usize;
     let mut bias = vec![Rgb::ZERO; width * width];
     for (i, &right) in reference.mean.iter().enumerate() {
         let (x0, y0) = (i % reference.size * edge, i / reference.size * edge);

@@ -63,10 +63,8 @@ impl<'a> Lookup<'a> {
         let rays = rows[0].rays?;
         let value = 1.0 / (variance * rays);
         // channels share their paths: errors add up, at worst
-        let error: Option<f64> = rows
-            .iter()
-            .map(|r| Some(r.variance? * r.efficiency_error? / r.efficiency?))
-            .sum::<Option<f64>>();
+        let error: Option<f64> =
+            rows.iter().map(|r| Some(r.variance? * r.efficiency_error? / r.efficiency?)).sum::<Option<f64>>();
         value.is_finite().then(|| (value, error.map(|e| value * e / variance)))
     }
 }

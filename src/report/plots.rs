@@ -2,7 +2,7 @@
 //! against the margin.
 
 use super::curves::{self, Curve};
-use super::figure::{Axis, Colour, Figure, Marker, Mark, Panel, Point, Series, Style};
+use super::figure::{Axis, Colour, Figure, Mark, Marker, Panel, Point, Series, Style};
 use super::lookup::Lookup;
 use crate::experiment::row::CHANNELS;
 use crate::experiment::spec::{Claim, Plot, Quantity};
@@ -50,6 +50,7 @@ fn title(quantity: Quantity) -> &'static str {
         Quantity::Cost => "Cost",
         Quantity::Efficiency => "Efficiency",
         Quantity::Zeros => "Paths that return zero",
+        Quantity::Added => "What the last bounce adds",
     }
 }
 
@@ -60,6 +61,7 @@ fn axis(quantity: Quantity) -> Axis {
         Quantity::Cost => Axis::log("rays a sample"),
         Quantity::Efficiency => Axis::log("1 / (variance × rays)  [(W m⁻² sr⁻¹)⁻²]"),
         Quantity::Zeros => Axis::linear("share of paths  [%]"),
+        Quantity::Added => Axis::log("last bounce / right total  [%]"),
     }
 }
 
@@ -76,7 +78,11 @@ fn over(
     let subject = subject(first, series);
     let mut panels = Vec::new();
     for &quantity in show {
-        let x = if log { Axis::log(parameter) } else { Axis::linear(parameter) };
+        let x = match parameter {
+            "q" => Axis::linear("survival probability q").within(0.0, 1.0),
+            _ if log => Axis::log(parameter),
+            _ => Axis::linear(parameter),
+        };
         let mut panel = Panel { title: title(quantity).to_owned(), x, y: axis(quantity), ..Panel::default() };
         for (i, curve) in curves.iter().enumerate() {
             draw(lookup, &mut panel, curve, i, quantity, parameter);
@@ -179,7 +185,8 @@ fn short(lookup: &Lookup<'_>, cell: usize) -> String {
 /// Relative bias of every judged unbiased cell of a scene, with its simultaneous interval.
 fn bias(lookup: &Lookup<'_>, scene: &str) -> Option<Named> {
     let judged = |&c: &usize| {
-        let has_interval = |channel| lookup.row(c, Estimand::Mean, Some(channel)).is_some_and(|r| r.ci.is_some());
+        let has_interval =
+            |channel| lookup.row(c, Estimand::Mean, Some(channel)).is_some_and(|r| r.ci.is_some());
         lookup.plan.cells[c].is_unbiased() && (0..3).any(has_interval)
     };
     let cells: Vec<usize> = lookup.of_scene(scene).into_iter().filter(judged).collect();

@@ -1,18 +1,37 @@
 //! `results.csv`, tidy: one row for each cell x estimand x channel. And `timing.csv`, apart from it, because seconds
 //! differ from run to run and results do not.
 
+use crate::estimator::BINS;
 use crate::experiment::row::CHANNELS;
 use crate::experiment::{Cell, Estimand, Plan, Row};
-use crate::estimator::BINS;
 
 /// The text of `results.csv`.
 pub fn results(plan: &Plan, rows: &[Row]) -> Vec<u8> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     let fixed = ["experiment", "scene", "estimator", "roulette"];
     let measured = [
-        "estimand", "bounce", "channel", "samples", "mean", "std_error", "variance", "truth", "truth_error",
-        "truth_source", "bias", "expected_bias", "ci_low", "ci_high", "e_value", "p_value", "mde", "verdict",
-        "rays_per_sample", "efficiency", "efficiency_error", "note",
+        "estimand",
+        "bounce",
+        "channel",
+        "samples",
+        "mean",
+        "std_error",
+        "variance",
+        "truth",
+        "truth_error",
+        "truth_source",
+        "bias",
+        "expected_bias",
+        "ci_low",
+        "ci_high",
+        "e_value",
+        "p_value",
+        "mde",
+        "verdict",
+        "rays_per_sample",
+        "efficiency",
+        "efficiency_error",
+        "note",
     ];
     let swept = plan.swept.iter().map(String::as_str);
     csv.write_record(fixed.into_iter().chain(swept).chain(measured)).expect("a Vec takes all");
@@ -24,8 +43,12 @@ pub fn results(plan: &Plan, rows: &[Row]) -> Vec<u8> {
 
 fn record(plan: &Plan, row: &Row) -> Vec<String> {
     let cell = &plan.cells[row.cell];
-    let mut record =
-        vec![plan.name.clone(), cell.scene_label.clone(), cell.estimator_label.clone(), cell.roulette_label.clone()];
+    let mut record = vec![
+        plan.name.clone(),
+        cell.scene_label.clone(),
+        cell.estimator_label.clone(),
+        cell.roulette_label.clone(),
+    ];
     record.extend(plan.swept.iter().map(|name| number(cell.params.get(name).copied())));
     record.extend([
         row.estimand.to_string(),
@@ -40,11 +63,11 @@ fn record(plan: &Plan, row: &Row) -> Vec<String> {
         row.source.to_owned(),
         number(row.bias),
         number(row.expected_bias),
-        number(row.ci.map(|ci| ci.0)),
-        number(row.ci.map(|ci| ci.1)),
+        derived(row.ci.map(|ci| ci.0)),
+        derived(row.ci.map(|ci| ci.1)),
         String::new(), // e-processes do not decide yet
-        number(row.p_value),
-        number(row.mde),
+        derived(row.p_value),
+        derived(row.mde),
         row.verdict.map_or_else(String::new, |verdict| verdict.to_string()),
         number(row.rays),
         number(row.efficiency),
@@ -63,6 +86,11 @@ pub fn index(estimand: Estimand, i: usize) -> String {
 /// Shortest digits that read back to the same number.
 fn number(value: Option<f64>) -> String {
     value.map_or_else(String::new, |v| format!("{v:?}"))
+}
+
+/// Nine digits: quantiles and tail probabilities pass through the platform's logarithm, whose last bits may differ.
+fn derived(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |v| format!("{v:.8e}"))
 }
 
 /// The text of `timing.csv`.

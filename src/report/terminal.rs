@@ -8,14 +8,22 @@ use std::fmt::Write;
 pub fn table(lookup: &Lookup<'_>) -> String {
     let finished = (0..lookup.plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty());
     let lines: Vec<Line> = finished.map(|c| summary::line(lookup, c)).collect();
-    let header =
-        ["scene", "estimator", "rule", "samples", "bias % (R G B)", "mde %", "rays", "verdict", ""].map(str::to_owned);
+    let header = ["scene", "estimator", "rule", "samples", "bias % (R G B)", "mde %", "rays", "verdict", ""]
+        .map(str::to_owned);
     let mut grid = vec![header];
     for line in lines {
         let verdict = line.verdict.map_or_else(|| "-".to_owned(), |v| v.to_string());
         let samples = line.samples.to_string();
         grid.push([
-            line.scene, line.estimator, line.rule, samples, line.bias, line.mde, line.rays, verdict, line.note,
+            line.scene,
+            line.estimator,
+            line.rule,
+            samples,
+            line.bias,
+            line.mde,
+            line.rays,
+            verdict,
+            line.note,
         ]);
     }
     let width = |column: usize| grid.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);

@@ -22,14 +22,9 @@ impl Address {
             hash.update(part.as_bytes());
         }
         let digest = hash.finalize();
-        let word = |at: usize| {
-            (0..8).fold(0u64, |word, byte| {
-                word | (u64::from(digest[at + byte]) << (8 * byte))
-            })
-        };
-        Address {
-            key: [word(0), word(8)],
-        }
+        let word =
+            |at: usize| (0..8).fold(0u64, |word, byte| word | (u64::from(digest[at + byte]) << (8 * byte)));
+        Address { key: [word(0), word(8)] }
     }
 
     /// The stream of one pixel in one realization (`pixel` = 0 for a probe).
@@ -40,9 +35,7 @@ impl Address {
         let a = mix(self.key[0].wrapping_add(realization.wrapping_mul(GOLDEN)));
         let low = mix((self.key[1] ^ a).wrapping_add(pixel.wrapping_mul(GOLDEN)));
         let high = mix(a ^ low);
-        Stream {
-            rng: Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low)),
-        }
+        Stream { rng: Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low)) }
     }
 }
 

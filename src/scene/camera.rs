@@ -86,9 +86,7 @@ impl Sensor {
     #[inline]
     pub fn ray(&self, (x, y): (u32, u32), stream: &mut Stream) -> (Ray, f64) {
         match self {
-            Sensor::Probe { origin, direction } => {
-                (Ray { o: *origin, d: *direction, from: NOWHERE }, 1.0)
-            }
+            Sensor::Probe { origin, direction } => (Ray { o: *origin, d: *direction, from: NOWHERE }, 1.0),
             Sensor::Irradiance { point, normal, on } => {
                 let d = Frame::around(*normal).to_world(cosine_hemisphere(stream.u2()));
                 (Ray { o: *point, d, from: on.unwrap_or(NOWHERE) }, PI) // cos / pdf = π

@@ -39,10 +39,7 @@ pub struct RectangleLanes {
 impl RectangleLanes {
     /// Collects the rectangles among `surfaces`.
     pub fn new(surfaces: &[Surface]) -> Self {
-        let mut lanes = RectangleLanes {
-            groups: Vec::new(),
-            slot: vec![-1.0; surfaces.len()],
-        };
+        let mut lanes = RectangleLanes { groups: Vec::new(), slot: vec![-1.0; surfaces.len()] };
         let mut count = 0;
         for (id, surface) in surfaces.iter().enumerate() {
             let Shape::Rectangle(r) = &surface.shape else {

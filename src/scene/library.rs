@@ -98,9 +98,7 @@ impl SceneKind {
     pub fn build(&self) -> Scene {
         match self {
             SceneKind::Furnace { albedo, emission, view } => furnace(*albedo, *emission, *view),
-            SceneKind::FurnaceBox { albedo, emission, view } => {
-                furnace_box(*albedo, *emission, *view)
-            }
+            SceneKind::FurnaceBox { albedo, emission, view } => furnace_box(*albedo, *emission, *view),
             SceneKind::IntegratingSphere { patches, looks_at, view } => {
                 integrating_sphere(patches, *looks_at, *view)
             }
@@ -167,7 +165,6 @@ fn integrating_sphere(patches: &[Patch], looks_at: usize, view: View) -> Scene {
 }
 
 fn custom(primitives: &[Primitive], sensor: Sensor) -> Scene {
-    let surface =
-        |p: &Primitive| Surface::new(p.shape, Material { albedo: p.albedo, le: p.emission });
+    let surface = |p: &Primitive| Surface::new(p.shape, Material { albedo: p.albedo, le: p.emission });
     Scene::new(primitives.iter().map(surface).collect(), sensor)
 }

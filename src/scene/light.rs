@@ -61,12 +61,7 @@ impl Lights {
             let pmf = power(surface) / total;
             if pmf > 0.0 {
                 cdf += pmf;
-                lights.push(Light {
-                    surface: id as u32,
-                    pmf,
-                    cdf,
-                    pdf: PdfA(1.0 / surface.shape.area()),
-                });
+                lights.push(Light { surface: id as u32, pmf, cdf, pdf: PdfA(1.0 / surface.shape.area()) });
             }
         }
         Lights { lights }
@@ -74,7 +69,7 @@ impl Lights {
 
     /// How many emitters there are.
     #[inline]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.lights.len()
     }
 

@@ -12,6 +12,7 @@ pub mod lanes;
 pub mod library;
 pub mod light;
 pub mod solid_angle;
+pub mod spheres;
 mod surface;
 
 pub use bsdf::{Directions, Material};
@@ -24,6 +25,7 @@ use crate::sampling::warp::Frame;
 use glam::DVec3;
 use lanes::RectangleLanes;
 use light::Lights;
+use spheres::Spheres;
 
 /// Red, green, blue: radiance [W m^-2 sr^-1], albedo or throughput, component by component.
 pub type Rgb = DVec3;
@@ -45,11 +47,7 @@ impl Hit {
     /// The ray that leaves this point in the unit direction `wi`.
     #[inline]
     pub fn spawn(&self, wi: DVec3) -> Ray {
-        Ray {
-            o: self.p,
-            d: wi,
-            from: self.surface,
-        }
+        Ray { o: self.p, d: wi, from: self.surface }
     }
 }
 
@@ -58,6 +56,8 @@ impl Hit {
 pub struct Scene {
     surfaces: Vec<Surface>,
     rectangles: RectangleLanes,
+    spheres: Spheres,
+    /// Triangles and disks.
     others: Vec<u32>,
     lights: Lights,
     /// What is measured.
@@ -69,27 +69,22 @@ impl Scene {
     pub fn new(surfaces: Vec<Surface>, sensor: Sensor) -> Self {
         let lights = Lights::new(&surfaces);
         let rectangles = RectangleLanes::new(&surfaces);
-        let is_other = |s: &Surface| !matches!(s.shape, Shape::Rectangle(_));
-        let others = (0u32..)
-            .zip(&surfaces)
-            .filter(|(_, s)| is_other(s))
-            .map(|(id, _)| id)
-            .collect();
-        Scene {
-            surfaces,
-            rectangles,
-            others,
-            lights,
-            sensor,
-        }
+        let spheres = Spheres::new(&surfaces);
+        let is_other = |s: &Surface| matches!(s.shape, Shape::Triangle(_) | Shape::Disk(_));
+        let others = (0u32..).zip(&surfaces).filter(|(_, s)| is_other(s)).map(|(id, _)| id).collect();
+        Scene { surfaces, rectangles, spheres, others, lights, sensor }
     }
 
     /// The nearest surface along the ray, if it shows its front: a back is black, as is the void around an open scene.
     #[inline]
     pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
         let (mut t, mut id) = self.rectangles.nearest(ray);
-        for &other in &self.others {
-            let candidate = self.surfaces[other as usize].shape.intersect(ray, other, &self.surfaces);
+        let (t_sphere, sphere) = self.spheres.nearest(ray);
+        if t_sphere < t {
+            (t, id) = (t_sphere, sphere);
+        }
+        for &other in self.others.iter().filter(|&&other| other != ray.from) {
+            let candidate = self.surfaces[other as usize].shape.intersect_flat(ray);
             if candidate < t {
                 (t, id) = (candidate, other);
             }
@@ -106,22 +101,16 @@ impl Scene {
     /// Whether nothing stands between the point `ray.o` on surface `ray.from` and `ray.o + ray.d` on surface `to`.
     #[inline]
     pub fn visible(&self, ray: &Ray, to: u32) -> bool {
-        !self.rectangles.blocks(ray, to)
-            && !self.others.iter().any(|&other| {
-                self.surfaces[other as usize].shape.blocks(ray, other, to, &self.surfaces)
-            })
+        let blocks = |&other: &u32| {
+            other != ray.from && other != to && self.surfaces[other as usize].shape.intersect_flat(ray) < 1.0
+        };
+        !self.rectangles.blocks(ray, to) && !self.spheres.blocks(ray, to) && !self.others.iter().any(blocks)
     }
 
     /// A point on an emitter as seen from `p`, the emitter picked in proportion to its power.
     /// `u` picks the light, `v` the point. `None` where the sampled point cannot send light to `p` (visibility aside).
     #[inline]
-    pub fn sample_light(
-        &self,
-        how: LightSampling,
-        p: DVec3,
-        u: f64,
-        v: (f64, f64),
-    ) -> Option<LightSample> {
+    pub fn sample_light(&self, how: LightSampling, p: DVec3, u: f64, v: (f64, f64)) -> Option<LightSample> {
         self.lights.sample(&self.surfaces, how, p, u, v)
     }
 
@@ -133,14 +122,11 @@ impl Scene {
     /// How many emitters there are; with one there is nothing to pick.
     #[inline]
     pub fn light_count(&self) -> usize {
-        self.lights.len()
+        self.lights.count()
     }
 
     /// The largest albedo of any surface and channel: bounds how slowly throughput can fall.
     pub fn max_albedo(&self) -> f64 {
-        self.surfaces
-            .iter()
-            .map(|s| s.material.albedo.max_element())
-            .fold(0.0, f64::max)
+        self.surfaces.iter().map(|s| s.material.albedo.max_element()).fold(0.0, f64::max)
     }
 }

@@ -36,10 +36,7 @@ pub fn rectangle(
         return None;
     }
     // mirrored so that the centre has no negative coordinate: the signs come back at the end
-    let (at_u, at_v) = (
-        to_center.dot(half_u) / length_u,
-        to_center.dot(half_v) / length_v,
-    );
+    let (at_u, at_v) = (to_center.dot(half_u) / length_u, to_center.dot(half_v) / length_v);
     let (x, y): (Span, Span) = ((at_u.abs(), length_u), (at_v.abs(), length_v));
     let solid_angle = rectangle_solid_angle(x, y, z);
     // sweep along the edge whose angles are closer in size to the solid angle: less is lost by adding them
@@ -125,13 +122,7 @@ fn triangle_solid_angle(det: f64, a: DVec3, b: DVec3, c: DVec3) -> f64 {
 ///
 /// The map of [Arvo 1995, Stratified Sampling of Spherical Triangles]: `u.0` cuts off a part by a line from `b` to a
 /// point of the edge `a c` (here by solving Van Oosterom and Strackee's equation), `u.1` is a point on that line.
-pub fn triangle(
-    from: DVec3,
-    a: DVec3,
-    b: DVec3,
-    c: DVec3,
-    u: (f64, f64),
-) -> Option<SolidAngleSample> {
+pub fn triangle(from: DVec3, a: DVec3, b: DVec3, c: DVec3, u: (f64, f64)) -> Option<SolidAngleSample> {
     let (ra, rb, rc) = (a - from, b - from, c - from);
     let (la, lb, normal) = (ra.length(), rb.length(), (b - a).cross(c - a));
     let det = ra.dot(normal).abs();

@@ -63,15 +63,9 @@ fn compare_exactly(q: &Question, rounding: f64) -> Evidence {
     let different = difference.abs() > q.systematic + rounding;
     let inside = difference.abs() + q.systematic < q.margin;
     let rule = if different {
-        (
-            Verdict::Fail,
-            format!("noise-free, but off by {difference:.3e}"),
-        )
+        (Verdict::Fail, format!("noise-free, but off by {difference:.3e}"))
     } else if inside || q.systematic == 0.0 {
-        (
-            Verdict::Pass,
-            "noise-free, and equal to rounding or the reference's error".to_string(),
-        )
+        (Verdict::Pass, "noise-free, and equal to rounding or the reference's error".to_string())
     } else {
         (Verdict::Inconclusive, too_coarse(q))
     };
@@ -97,11 +91,7 @@ fn test(q: &Question, level: f64) -> Evidence {
     Evidence {
         p_different: two_sided_p((distance - q.systematic).max(0.0) / se, df),
         // of the two one-sided p-values the one towards the nearer margin
-        p_outside: if room > 0.0 {
-            one_sided_p((room - distance) / se, df)
-        } else {
-            1.0
-        },
+        p_outside: if room > 0.0 { one_sided_p((room - distance) / se, df) } else { 1.0 },
         ci: (difference - half_width, difference + half_width),
         mde: (t + quantile(POWER, f64::INFINITY)) * se + q.systematic,
         df,
@@ -131,9 +121,7 @@ mod tests {
     #[track_caller]
     fn settled(q: &Question) -> (Verdict, String) {
         assert_eq!(q.defect(0.05), None);
-        weigh(q, 0.01)
-            .settled
-            .expect("a rule should have settled it")
+        weigh(q, 0.01).settled.expect("a rule should have settled it")
     }
 
     #[test]
@@ -159,17 +147,8 @@ mod tests {
 
     #[test]
     fn without_two_blocks_nothing_is_known() {
-        let one = Question {
-            df: 0.0,
-            std_error: f64::NAN,
-            noise_free: true,
-            ..Question::example()
-        };
-        let reference = Question {
-            expected_std_error: 0.1,
-            expected_df: 0.0,
-            ..Question::example()
-        };
+        let one = Question { df: 0.0, std_error: f64::NAN, noise_free: true, ..Question::example() };
+        let reference = Question { expected_std_error: 0.1, expected_df: 0.0, ..Question::example() };
         for q in [one, reference] {
             let (verdict, reason) = settled(&q);
             assert_eq!(verdict, Verdict::Inconclusive);
@@ -178,55 +157,27 @@ mod tests {
             assert_eq!((e.p_different, e.p_outside, e.mde), (1.0, 1.0, INF));
         }
         // an exact reference has no blocks
-        assert!(
-            weigh(
-                &Question {
-                    expected_df: 0.0,
-                    ..Question::example()
-                },
-                0.01
-            )
-            .settled
-            .is_none()
-        );
+        assert!(weigh(&Question { expected_df: 0.0, ..Question::example() }, 0.01).settled.is_none());
     }
 
     #[test]
     fn no_variation_is_not_certainty() {
         // the last is rounding, and neither bias nor a noisy reference helps
         for (mean, std_error, noise) in [(10.0, 0.0, 0.0), (17.0, 0.0, 0.1), (17.0, 3e-15, 0.0)] {
-            let q = Question {
-                mean,
-                std_error,
-                expected_std_error: noise,
-                ..Question::example()
-            };
+            let q = Question { mean, std_error, expected_std_error: noise, ..Question::example() };
             let (verdict, reason) = settled(&q);
             assert_eq!(verdict, Verdict::Inconclusive);
             assert!(reason.contains("no variation was seen, so there is no interval"));
         }
-        let tiny = Question {
-            std_error: 3e-14,
-            ..Question::example()
-        };
+        let tiny = Question { std_error: 3e-14, ..Question::example() };
         assert!(weigh(&tiny, 0.01).settled.is_none());
     }
 
     #[test]
     fn noise_free_means_equal_and_without_variation() {
-        let exact = Question {
-            std_error: 0.0,
-            noise_free: true,
-            ..Question::example()
-        };
+        let exact = Question { std_error: 0.0, noise_free: true, ..Question::example() };
         let verdict = |mean: f64, expected: f64, std_error: f64, systematic: f64| {
-            let (verdict, _) = settled(&Question {
-                mean,
-                expected,
-                std_error,
-                systematic,
-                ..exact.clone()
-            });
+            let (verdict, _) = settled(&Question { mean, expected, std_error, systematic, ..exact.clone() });
             verdict
         };
         assert_eq!(verdict(10.0 + 9e-12, 10.0, 9e-12, 0.0), Verdict::Pass);
@@ -238,17 +189,10 @@ mod tests {
         assert_eq!(verdict(10.0 + 3e-4, 10.0, 0.0, 4e-4), Verdict::Pass);
         assert_eq!(verdict(10.0 + 8e-4, 10.0, 0.0, 9e-4), Verdict::Inconclusive);
         assert_eq!(verdict(10.0 + 8e-4, 10.0, 0.0, 1e-4), Verdict::Fail);
-        let (_, reason) = settled(&Question {
-            std_error: 0.25,
-            ..exact.clone()
-        });
+        let (_, reason) = settled(&Question { std_error: 0.25, ..exact.clone() });
         assert!(reason.contains("noise-free in theory, but it varies"));
         // against a noisy reference it is a test like any other
-        let noisy = Question {
-            expected_std_error: 0.1,
-            expected_df: 9.0,
-            ..exact
-        };
+        let noisy = Question { expected_std_error: 0.1, expected_df: 9.0, ..exact };
         let e = weigh(&noisy, 0.01);
         assert!(e.settled.is_none() && e.df == 9.0);
     }

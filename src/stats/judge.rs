@@ -19,9 +19,7 @@ use super::student::{quantile, upper_quantile};
 /// not finite are INVALID, with the reason.
 pub fn judge(questions: &[Question], alpha: f64) -> Vec<Answer> {
     let defects: Vec<Option<String>> = questions.iter().map(|q| q.defect(alpha)).collect();
-    let valid: Vec<usize> = (0..questions.len())
-        .filter(|&i| defects[i].is_none())
-        .collect();
+    let valid: Vec<usize> = (0..questions.len()).filter(|&i| defects[i].is_none()).collect();
     let level = bonferroni(alpha, valid.len());
     let evidence: Vec<Evidence> = valid.iter().map(|&i| weigh(&questions[i], level)).collect();
     let p_different: Vec<f64> = evidence.iter().map(|e| e.p_different).collect();
@@ -36,21 +34,8 @@ pub fn judge(questions: &[Question], alpha: f64) -> Vec<Answer> {
             Some(rule) => rule,
             None => conclude(q, &e, different[k], equivalent[k], level),
         };
-        let Evidence {
-            p_different,
-            p_outside,
-            ci,
-            mde,
-            ..
-        } = e;
-        answers[valid[k]] = Answer {
-            verdict,
-            reason,
-            p_different,
-            p_outside,
-            ci,
-            mde,
-        };
+        let Evidence { p_different, p_outside, ci, mde, .. } = e;
+        answers[valid[k]] = Answer { verdict, reason, p_different, p_outside, ci, mde };
     }
     answers
 }
@@ -68,42 +53,22 @@ fn invalid(defect: Option<String>) -> Answer {
 }
 
 /// Verdict and reason, given what Holm's test rejects.
-fn conclude(
-    q: &Question,
-    e: &Evidence,
-    different: bool,
-    equivalent: bool,
-    level: f64,
-) -> (Verdict, String) {
+fn conclude(q: &Question, e: &Evidence, different: bool, equivalent: bool, level: f64) -> (Verdict, String) {
     let difference = q.mean - q.expected;
-    let Evidence {
-        p_different,
-        p_outside,
-        ci: (low, high),
-        ..
-    } = *e;
+    let Evidence { p_different, p_outside, ci: (low, high), .. } = *e;
     let margin = q.margin;
     let inside = -margin < low && high < margin;
     if equivalent && (inside || !different) {
-        let shown =
-            format!("difference {difference:.3e} within ±{margin:.3e}, p = {p_outside:.1e}");
+        let shown = format!("difference {difference:.3e} within ±{margin:.3e}, p = {p_outside:.1e}");
         let caveat = "; smaller than the margin, yet significantly different from zero, p =";
-        let caveat = if different {
-            format!("{caveat} {p_different:.1e}")
-        } else {
-            String::new()
-        };
+        let caveat = if different { format!("{caveat} {p_different:.1e}") } else { String::new() };
         return (Verdict::Pass, shown + &caveat);
     }
     if different {
         let shown = format!("difference {difference:.3e} is significant, p = {p_different:.1e}");
         return (Verdict::Fail, shown);
     }
-    let reason = if q.systematic >= margin {
-        too_coarse(q)
-    } else {
-        missing(q, e.df, level)
-    };
+    let reason = if q.systematic >= margin { too_coarse(q) } else { missing(q, e.df, level) };
     (Verdict::Inconclusive, reason)
 }
 
@@ -139,12 +104,7 @@ mod tests {
     use super::*;
 
     fn question(mean: f64, std_error: f64, margin: f64) -> Question {
-        Question {
-            mean,
-            std_error,
-            margin,
-            ..Question::example()
-        }
+        Question { mean, std_error, margin, ..Question::example() }
     }
 
     #[track_caller]
@@ -157,26 +117,10 @@ mod tests {
 
     #[test]
     fn the_four_outcomes_of_two_tests() {
-        expect(
-            question(10.1, 0.25, 2.0),
-            Verdict::Pass,
-            "within ±2.000e0, p = ",
-        );
-        expect(
-            question(12.0, 0.25, 1.0),
-            Verdict::Fail,
-            "2.000e0 is significant",
-        );
-        expect(
-            question(10.4, 0.25, 0.5),
-            Verdict::Inconclusive,
-            "times the samples",
-        );
-        let both = expect(
-            question(11.0, 0.25, 2.0),
-            Verdict::Pass,
-            "yet significantly different",
-        );
+        expect(question(10.1, 0.25, 2.0), Verdict::Pass, "within ±2.000e0, p = ");
+        expect(question(12.0, 0.25, 1.0), Verdict::Fail, "2.000e0 is significant");
+        expect(question(10.4, 0.25, 0.5), Verdict::Inconclusive, "times the samples");
+        let both = expect(question(11.0, 0.25, 2.0), Verdict::Pass, "yet significantly different");
         assert!(both.ci.0 > 0.0 && both.ci.1 < 2.0);
     }
 
@@ -191,88 +135,40 @@ mod tests {
 
     #[test]
     fn the_reference_limits_what_can_be_shown() {
-        let coarse = Question {
-            systematic: 0.5,
-            ..question(10.0, 1e-3, 0.5)
-        };
-        let answer = expect(
-            coarse.clone(),
-            Verdict::Inconclusive,
-            "too coarse for the margin",
-        );
+        let coarse = Question { systematic: 0.5, ..question(10.0, 1e-3, 0.5) };
+        let answer = expect(coarse.clone(), Verdict::Inconclusive, "too coarse for the margin");
         assert_eq!(answer.p_outside, 1.0);
-        expect(
-            Question {
-                mean: 10.6,
-                ..coarse.clone()
-            },
-            Verdict::Fail,
-            "significant",
-        );
-        expect(
-            Question {
-                mean: 10.4,
-                ..coarse
-            },
-            Verdict::Inconclusive,
-            "too coarse",
-        );
-        let noisy = Question {
-            expected_std_error: 0.2,
-            expected_df: 9.0,
-            ..question(10.0, 0.1, 0.1)
-        };
+        expect(Question { mean: 10.6, ..coarse.clone() }, Verdict::Fail, "significant");
+        expect(Question { mean: 10.4, ..coarse }, Verdict::Inconclusive, "too coarse");
+        let noisy = Question { expected_std_error: 0.2, expected_df: 9.0, ..question(10.0, 0.1, 0.1) };
         expect(noisy, Verdict::Inconclusive, "too noisy for the margin");
     }
 
     #[test]
     fn missing_samples() {
         // ((1.753050 + 1.644854) 0.25 / 0.05)²
-        expect(
-            question(10.0, 0.25, 0.05),
-            Verdict::Inconclusive,
-            "288.64 times",
-        );
+        expect(question(10.0, 0.25, 0.05), Verdict::Inconclusive, "288.64 times");
         // the systematic error leaves 0.05 of the margin
-        let less = Question {
-            systematic: 0.05,
-            ..question(10.0, 0.25, 0.1)
-        };
+        let less = Question { systematic: 0.05, ..question(10.0, 0.25, 0.1) };
         expect(less, Verdict::Inconclusive, "288.64 times");
         // 0.25² / ((0.2 / (1.752683 + 1.644854))² - 0.01²)
-        let noisy = Question {
-            expected_std_error: 1e-2,
-            ..question(10.0, 0.25, 0.2)
-        };
+        let noisy = Question { expected_std_error: 1e-2, ..question(10.0, 0.25, 0.2) };
         expect(noisy, Verdict::Inconclusive, "18.57 times");
-        expect(
-            question(10.45, 0.25, 0.86),
-            Verdict::Inconclusive,
-            "too near to the margin",
-        );
+        expect(question(10.45, 0.25, 0.86), Verdict::Inconclusive, "too near to the margin");
     }
 
     #[test]
     fn invalid_questions_do_not_burden_the_others() {
         let q = question(10.6, 0.25, 1e-3);
-        let invalid = Question {
-            invalid: Some("3 samples are NaN".to_string()),
-            ..q.clone()
-        };
+        let invalid = Question { invalid: Some("3 samples are NaN".to_string()), ..q.clone() };
         let alone = judge(std::slice::from_ref(&q), 0.05);
         let among = judge(&[invalid.clone(), q.clone(), invalid], 0.05);
         assert_eq!(among[1], alone[0]);
         assert_eq!(alone[0].verdict, Verdict::Fail);
-        assert_eq!(
-            (among[0].verdict, among[2].reason.as_str()),
-            (Verdict::Invalid, "3 samples are NaN")
-        );
+        assert_eq!((among[0].verdict, among[2].reason.as_str()), (Verdict::Invalid, "3 samples are NaN"));
         assert!(among[0].p_different.is_nan() && among[0].mde.is_nan());
         // any other does, even one that is settled by a rule: p = 0.03
-        let silent = Question {
-            std_error: 0.0,
-            ..q.clone()
-        };
+        let silent = Question { std_error: 0.0, ..q.clone() };
         assert_eq!(judge(&[q, silent], 0.05)[0].verdict, Verdict::Inconclusive);
     }
 
@@ -280,17 +176,9 @@ mod tests {
     fn the_family_is_the_run() {
         // p = 0.0305, 0.0120, 0.0180: Holm finds all three but not the first alone
         let three = [10.597, 10.714, 10.664].map(|mean| question(mean, 0.25, 1e-3));
-        assert!(
-            judge(&three, 0.05)
-                .iter()
-                .all(|a| a.verdict == Verdict::Fail)
-        );
+        assert!(judge(&three, 0.05).iter().all(|a| a.verdict == Verdict::Fail));
         let four = [10.597, 10.0, 10.0, 10.664].map(|mean| question(mean, 0.25, 1e-3));
-        assert!(
-            judge(&four, 0.05)
-                .iter()
-                .all(|a| a.verdict == Verdict::Inconclusive)
-        );
+        assert!(judge(&four, 0.05).iter().all(|a| a.verdict == Verdict::Inconclusive));
         assert!(judge(&[], 0.05).is_empty());
         assert_eq!(judge(&three, f64::NAN)[0].verdict, Verdict::Invalid);
     }

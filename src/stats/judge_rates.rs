@@ -15,10 +15,7 @@ struct Normals(u64);
 
 impl Normals {
     fn uniform(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
@@ -35,12 +32,7 @@ impl Normals {
 
     fn question(&mut self, bias: f64, margin: f64) -> Question {
         let (mean, std_error) = self.estimate(10.0 + bias);
-        Question {
-            mean,
-            std_error,
-            margin,
-            ..Question::example()
-        }
+        Question { mean, std_error, margin, ..Question::example() }
     }
 }
 
@@ -87,10 +79,7 @@ fn a_noisy_reference_keeps_the_rate() {
         }
         family
     });
-    assert!(
-        at_most(alarms, ALPHA) && at_least(alarms, 0.035),
-        "{alarms}"
-    );
+    assert!(at_most(alarms, ALPHA) && at_least(alarms, 0.035), "{alarms}");
 }
 
 #[test]
@@ -100,10 +89,7 @@ fn a_bias_as_large_as_the_systematic_error_raises_no_more_alarms() {
         family.iter_mut().for_each(|q| q.systematic = SE);
         family
     });
-    assert!(
-        at_most(alarms, ALPHA) && at_least(alarms, 0.015),
-        "{alarms}"
-    );
+    assert!(at_most(alarms, ALPHA) && at_least(alarms, 0.015), "{alarms}");
 }
 
 #[test]

@@ -36,8 +36,7 @@ impl Moments {
         // in this order, a huge first value does not become infinity * 0
         let square = delta * (step * before);
         self.mean += step;
-        self.m4 +=
-            square * step2 * (n * n - 3.0 * n + 3.0) + 6.0 * step2 * self.m2 - 4.0 * step * self.m3;
+        self.m4 += square * step2 * (n * n - 3.0 * n + 3.0) + 6.0 * step2 * self.m2 - 4.0 * step * self.m3;
         self.m3 += square * step * (n - 2.0) - 3.0 * step * self.m2;
         self.m2 += square;
     }
@@ -60,8 +59,7 @@ impl Moments {
             + square * delta * delta * (wa * wa - wa * wb + wb * wb)
             + 6.0 * delta * delta * (wa * wa * other.m2 + wb * wb * self.m2)
             + 4.0 * delta * (wa * other.m3 - wb * self.m3);
-        self.m3 +=
-            other.m3 + square * delta * (wa - wb) + 3.0 * delta * (wa * other.m2 - wb * self.m2);
+        self.m3 += other.m3 + square * delta * (wa - wb) + 3.0 * delta * (wa * other.m2 - wb * self.m2);
         self.m2 += other.m2 + square;
         self.mean += delta * wb;
         self.n += other.n;
@@ -115,22 +113,15 @@ mod tests {
     fn values(count: usize, offset: f64) -> Vec<f64> {
         let mut state = 1_u64;
         let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        (0..count)
-            .map(|_| offset - next().ln_1p() + next().powi(4))
-            .collect()
+        (0..count).map(|_| offset - next().ln_1p() + next().powi(4)).collect()
     }
 
     #[track_caller]
     fn close(a: f64, b: f64, tolerance: f64) {
-        assert!(
-            (a - b).abs() <= tolerance * b.abs(),
-            "{a} is not {b} to {tolerance}"
-        );
+        assert!((a - b).abs() <= tolerance * b.abs(), "{a} is not {b} to {tolerance}");
     }
 
     #[track_caller]
@@ -143,12 +134,10 @@ mod tests {
     }
 
     fn merged(values: &[f64], block: usize) -> Moments {
-        values
-            .chunks(block)
-            .fold(Moments::default(), |mut sum, part| {
-                sum.merge(&pushed(part));
-                sum
-            })
+        values.chunks(block).fold(Moments::default(), |mut sum, part| {
+            sum.merge(&pushed(part));
+            sum
+        })
     }
 
     #[test]
@@ -184,11 +173,7 @@ mod tests {
         close(moments.variance().unwrap(), 29.88392857142857, 1e-14);
         close(moments.std_error().unwrap(), 2.0661879520172466, 1e-14);
         close(moments.skewness().unwrap(), 1.3099289849281504, 1e-14);
-        close(
-            moments.variance_std_error().unwrap(),
-            15.306610850241519,
-            1e-14,
-        );
+        close(moments.variance_std_error().unwrap(), 15.306610850241519, 1e-14);
     }
 
     #[test]
@@ -206,14 +191,7 @@ mod tests {
     fn empty_is_the_identity_and_too_few_values_have_no_variance() {
         let empty = Moments::default();
         // the square of the last would overflow
-        for some in [
-            pushed(&[0.1, 0.7, 0.3]),
-            Moments {
-                n: 1,
-                mean: 1e200,
-                ..empty
-            },
-        ] {
+        for some in [pushed(&[0.1, 0.7, 0.3]), Moments { n: 1, mean: 1e200, ..empty }] {
             let (mut left, mut right) = (empty, some);
             left.merge(&some);
             right.merge(&empty);
@@ -242,13 +220,7 @@ mod tests {
 
     #[test]
     fn rounding_can_not_make_the_error_of_the_variance_imaginary() {
-        let coin = Moments {
-            n: 1 << 40,
-            mean: 0.0,
-            m2: 1e12,
-            m3: 0.0,
-            m4: 0.909e12,
-        };
+        let coin = Moments { n: 1 << 40, mean: 0.0, m2: 1e12, m3: 0.0, m4: 0.909e12 };
         assert_eq!(coin.variance_std_error(), Some(0.0));
     }
 }

@@ -1,5 +1,6 @@
 //! What [`judge`](super::judge::judge) is asked and what it answers.
 
+use super::moments::Moments;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -59,46 +60,42 @@ pub struct Question {
 }
 
 impl Question {
+    /// Whether the mean of `blocks` is `expected`, which is known exactly, give or take `margin` (absolute).
+    pub fn about(blocks: &Moments, invalid: Option<String>, expected: f64, margin: f64) -> Self {
+        Question {
+            mean: blocks.mean,
+            std_error: blocks.std_error().unwrap_or(f64::NAN),
+            df: blocks.n as f64 - 1.0,
+            expected,
+            expected_std_error: 0.0,
+            expected_df: f64::INFINITY,
+            systematic: 0.0,
+            margin,
+            noise_free: false,
+            invalid,
+        }
+    }
+
     /// Why a question has no answer.
     pub(super) fn defect(&self, alpha: f64) -> Option<String> {
         let is_error = |x: f64| x.is_finite() && x >= 0.0;
         // without degrees of freedom there is no standard error to look at
         let requirements = [
             (alpha > 0.0 && alpha < 1.0, "alpha is not between 0 and 1"),
-            (
-                self.margin.is_finite() && self.margin > 0.0,
-                "the margin is not finite and positive",
-            ),
+            (self.margin.is_finite() && self.margin > 0.0, "the margin is not finite and positive"),
             (self.mean.is_finite(), "the mean is not finite"),
-            (
-                self.expected.is_finite(),
-                "the expected value is not finite",
-            ),
-            (
-                (self.mean - self.expected).is_finite(),
-                "the difference is not finite",
-            ),
-            (
-                is_error(self.systematic),
-                "the systematic error is not finite or negative",
-            ),
-            (
-                !self.df.is_nan() && !self.expected_df.is_nan(),
-                "the degrees of freedom are NaN",
-            ),
-            (
-                self.df < 1.0 || is_error(self.std_error),
-                "the standard error is not finite or negative",
-            ),
+            (self.expected.is_finite(), "the expected value is not finite"),
+            ((self.mean - self.expected).is_finite(), "the difference is not finite"),
+            (is_error(self.systematic), "the systematic error is not finite or negative"),
+            (!self.df.is_nan() && !self.expected_df.is_nan(), "the degrees of freedom are NaN"),
+            (self.df < 1.0 || is_error(self.std_error), "the standard error is not finite or negative"),
             (
                 self.expected_df < 1.0 || is_error(self.expected_std_error),
                 "the reference's standard error is not finite or negative",
             ),
         ];
         let unmet = requirements.iter().find(|(met, _)| !met);
-        self.invalid
-            .clone()
-            .or(unmet.map(|(_, reason)| reason.to_string()))
+        self.invalid.clone().or(unmet.map(|(_, reason)| reason.to_string()))
     }
 }
 
@@ -167,55 +164,21 @@ mod tests {
 
     #[test]
     fn defects() {
-        let mut broken = vec![Question {
-            invalid: Some("NaN".to_string()),
-            ..Question::example()
-        }];
+        let mut broken = vec![Question { invalid: Some("NaN".to_string()), ..Question::example() }];
         for bad in [f64::NAN, f64::INFINITY, -1.0] {
-            broken.push(Question {
-                std_error: bad,
-                ..Question::example()
-            });
-            broken.push(Question {
-                expected_std_error: bad,
-                ..Question::example()
-            });
-            broken.push(Question {
-                systematic: bad,
-                ..Question::example()
-            });
-            broken.push(Question {
-                margin: bad,
-                ..Question::example()
-            });
+            broken.push(Question { std_error: bad, ..Question::example() });
+            broken.push(Question { expected_std_error: bad, ..Question::example() });
+            broken.push(Question { systematic: bad, ..Question::example() });
+            broken.push(Question { margin: bad, ..Question::example() });
         }
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            broken.push(Question {
-                mean: bad,
-                ..Question::example()
-            });
-            broken.push(Question {
-                expected: bad,
-                ..Question::example()
-            });
+            broken.push(Question { mean: bad, ..Question::example() });
+            broken.push(Question { expected: bad, ..Question::example() });
         }
-        broken.push(Question {
-            margin: 0.0,
-            ..Question::example()
-        });
-        broken.push(Question {
-            df: f64::NAN,
-            ..Question::example()
-        });
-        broken.push(Question {
-            expected_df: f64::NAN,
-            ..Question::example()
-        });
-        broken.push(Question {
-            mean: 1e308,
-            expected: -1e308,
-            ..Question::example()
-        });
+        broken.push(Question { margin: 0.0, ..Question::example() });
+        broken.push(Question { df: f64::NAN, ..Question::example() });
+        broken.push(Question { expected_df: f64::NAN, ..Question::example() });
+        broken.push(Question { mean: 1e308, expected: -1e308, ..Question::example() });
         for q in broken {
             assert!(q.defect(0.05).is_some(), "{q:?}");
         }

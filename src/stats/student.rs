@@ -22,11 +22,7 @@ pub fn one_sided_p(t: f64, df: f64) -> f64 {
     if t.is_nan() || df.is_nan() || df <= 0.0 {
         return f64::NAN;
     }
-    if t < 0.0 {
-        1.0 - upper_tail(-t, df)
-    } else {
-        upper_tail(t, df)
-    }
+    if t < 0.0 { 1.0 - upper_tail(-t, df) } else { upper_tail(t, df) }
 }
 
 /// P(|T| > |t|) of Student's t; precision and range as [`one_sided_p`].
@@ -40,11 +36,7 @@ pub fn two_sided_p(t: f64, df: f64) -> f64 {
 /// For `p` next to 1 use [`upper_quantile`]: `1 - 1e-12` has four digits left.
 /// NaN if `p` is outside 0..=1 or `df` is NaN or not positive.
 pub fn quantile(p: f64, df: f64) -> f64 {
-    if p < 0.5 {
-        -upper_quantile(p, df)
-    } else {
-        upper_quantile(1.0 - p, df)
-    }
+    if p < 0.5 { -upper_quantile(p, df) } else { upper_quantile(1.0 - p, df) }
 }
 
 /// The t that Student's t with `df` degrees of freedom exceeds with
@@ -165,10 +157,7 @@ mod tests {
 
     #[track_caller]
     fn close(a: f64, b: f64, tolerance: f64) {
-        assert!(
-            (a - b).abs() <= tolerance * b.abs(),
-            "{a:e} is not {b:e} to {tolerance:e}"
-        );
+        assert!((a - b).abs() <= tolerance * b.abs(), "{a:e} is not {b:e} to {tolerance:e}");
     }
 
     /// scipy.stats.t.ppf of SciPy 1.17.1; norm.ppf at infinity.
@@ -217,9 +206,7 @@ mod tests {
 
     #[test]
     fn tail_and_quantile_are_inverse_on_both_sides_of_the_seam() {
-        for df in [
-            1.0, 1.3, 7.7, 63.0, 999.9, 1000.0, 1000.1, 2e7, 1e19, 1e21, INF,
-        ] {
+        for df in [1.0, 1.3, 7.7, 63.0, 999.9, 1000.0, 1000.1, 2e7, 1e19, 1e21, INF] {
             for q in [1e-300, 1e-30, 1e-9, 0.01, 0.3, 0.4999, 0.7] {
                 let t = upper_quantile(q, df);
                 // Cauchy has 1e-300 at 3e299, the square of which overflows

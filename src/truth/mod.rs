@@ -55,9 +55,7 @@ impl ClosedForm {
         let single = |albedo: Rgb, emission: Rgb| vec![Patch { fraction: 1.0, albedo, emission }];
         let (patches, looks_at, view, spherical) = match scene {
             SceneKind::Furnace { albedo, emission, view } => (single(*albedo, *emission), 0, view, true),
-            SceneKind::FurnaceBox { albedo, emission, view } => {
-                (single(*albedo, *emission), 0, view, false)
-            }
+            SceneKind::FurnaceBox { albedo, emission, view } => (single(*albedo, *emission), 0, view, false),
             SceneKind::IntegratingSphere { patches, looks_at, view } => {
                 (patches.clone(), *looks_at, view, true)
             }

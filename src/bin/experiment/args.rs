@@ -7,7 +7,12 @@ use std::path::PathBuf;
 ///
 /// Exit status: 0 all claims held, 1 a claim failed or stayed inconclusive, 2 usage or input, 130 interrupted.
 #[derive(Parser)]
-#[command(name = "experiment", version, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
+#[command(
+    name = "experiment",
+    version,
+    args_conflicts_with_subcommands = true,
+    arg_required_else_help = true
+)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,

@@ -32,7 +32,10 @@ impl Source {
         let text = fs::read_to_string(&file).map_err(|e| Error::io("cannot read", &file, e))?;
         let name = file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         if COMMANDS.contains(&name.as_str()) {
-            return Err(Error::Refused(format!("{}: `{name}` is a command; rename the file", file.display())));
+            return Err(Error::Refused(format!(
+                "{}: `{name}` is a command; rename the file",
+                file.display()
+            )));
         }
         let text = options.set.iter().try_fold(text, |text, change| set(&file, &text, change))?;
         let root = folder.and_then(|f| f.parent().map(Path::to_owned)).unwrap_or_default();
@@ -90,7 +93,9 @@ fn set(file: &Path, text: &str, change: &str) -> Result<String, Error> {
             (toml::Value::Array(items), Ok(i)) => {
                 items.get_mut(i).ok_or_else(|| refuse(&format!("there is no element {key}")))?
             }
-            (toml::Value::Table(t), _) => t.entry(key).or_insert_with(|| toml::Value::Table(toml::Table::new())),
+            (toml::Value::Table(t), _) => {
+                t.entry(key).or_insert_with(|| toml::Value::Table(toml::Table::new()))
+            }
             _ => return Err(refuse(&format!("`{key}` is not inside a table or list"))),
         };
     }

@@ -32,7 +32,12 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
     };
     let pixels = u64::from(resolution) * u64::from(resolution);
     let plan = CellPlan {
-        address: Address::of(&["render", &options.seed.unwrap_or(1).to_string(), &args.scene, &args.estimator]),
+        address: Address::of(&[
+            "render",
+            &options.seed.unwrap_or(1).to_string(),
+            &args.scene,
+            &args.estimator,
+        ]),
         scene_label: args.scene.clone(),
         estimator_label: args.estimator.clone(),
         roulette_label: "throughput".to_owned(),

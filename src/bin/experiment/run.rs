@@ -66,11 +66,7 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
 }
 
 /// The finished cells, and the seconds of each.
-fn sample(
-    plan: &Plan,
-    options: &Options,
-    stop: &AtomicBool,
-) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
+fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
     let pool = pool(options)?;
     let progress = Progress::new(plan, options.quiet || options.format == Format::Json);
     let mut cells = Vec::new();
@@ -164,7 +160,12 @@ pub fn plans(names: &[String], options: &Options) -> Result<u8, Error> {
         let plan = Source::read(name, options)?.plan(options)?;
         println!("{}: {}\n", plan.name, plan.spec.question);
         for cell in &plan.cells {
-            println!("{:<64} {:>12} samples {:>10.2e} rays", plan.label(cell), cell.samples, cell.total_rays());
+            println!(
+                "{:<64} {:>12} samples {:>10.2e} rays",
+                plan.label(cell),
+                cell.samples,
+                cell.total_rays()
+            );
         }
         println!("{}", cost(&plan));
     }

@@ -20,17 +20,11 @@ impl Ink {
     pub const FAINT_GRID: Self = Self::grey(0xEE);
 
     const fn grey(level: u8) -> Self {
-        Self {
-            rgb: (level, level, level),
-            alpha: 1.0,
-        }
+        Self { rgb: (level, level, level), alpha: 1.0 }
     }
 
     pub fn of(colour: Colour) -> Self {
-        Self {
-            rgb: colour.rgb(),
-            alpha: 1.0,
-        }
+        Self { rgb: colour.rgb(), alpha: 1.0 }
     }
 
     pub fn faded(self, alpha: f64) -> Self {
@@ -112,11 +106,7 @@ impl Canvas {
     }
 
     pub fn disc(&mut self, centre: Xy, radius: f64, ink: Ink) {
-        self.shapes.push(Shape::Disc {
-            centre,
-            radius,
-            ink,
-        });
+        self.shapes.push(Shape::Disc { centre, radius, ink });
     }
 
     pub fn polygon(&mut self, points: Vec<Xy>, ink: Ink) {
@@ -135,14 +125,7 @@ impl Canvas {
     fn write(&mut self, text: &str, at: Xy, em: f64, anchor: Anchor, upward: bool) {
         // control characters are not allowed in XML
         let text = text.replace(|letter: char| letter.is_control(), " ");
-        self.shapes.push(Shape::Text {
-            text,
-            at,
-            em,
-            anchor,
-            upward,
-            ink: Ink::TEXT,
-        });
+        self.shapes.push(Shape::Text { text, at, em, anchor, upward, ink: Ink::TEXT });
     }
 
     /// A marker with a thin white rim, which keeps it apart from lines under it.
@@ -197,10 +180,7 @@ impl Canvas {
             while length - done > left {
                 done += left;
                 let share = done / length;
-                let at = (
-                    from.0 + share * (to.0 - from.0),
-                    from.1 + share * (to.1 - from.1),
-                );
+                let at = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
                 dash.push(at);
                 if part % 2 == 0 {
                     self.path(dash, width, ink);

@@ -52,13 +52,8 @@ pub enum Marker {
 impl Marker {
     /// The marker for the series with this index; starts again after five.
     pub fn nth(index: usize) -> Self {
-        const ALL: [Marker; 5] = [
-            Marker::Circle,
-            Marker::Square,
-            Marker::Triangle,
-            Marker::Diamond,
-            Marker::Cross,
-        ];
+        const ALL: [Marker; 5] =
+            [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::Cross];
         ALL[index % ALL.len()]
     }
 }
@@ -79,12 +74,7 @@ pub struct Point {
 impl Point {
     /// A point without error bar.
     pub fn new(x: f64, y: f64) -> Self {
-        Self {
-            x,
-            y,
-            low: y,
-            high: y,
-        }
+        Self { x, y, low: y, high: y }
     }
 
     /// A point with an error bar from `low` to `high`.

@@ -6,15 +6,10 @@ use std::sync::OnceLock;
 
 /// The font as WOFF2, for the `@font-face` of a page that shows the SVG; its family is
 /// "Furnace Sans".
-pub const WOFF2: &[u8] = include_bytes!(concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/assets/fonts/FurnaceSans.woff2"
-));
+pub const WOFF2: &[u8] =
+    include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.woff2"));
 
-const TTF: &[u8] = include_bytes!(concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/assets/fonts/FurnaceSans.ttf"
-));
+const TTF: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.ttf"));
 
 /// What text in the SVG asks for: our font, else its parent, which is as wide, else any.
 /// plotters takes the whole list as one name.
@@ -28,11 +23,7 @@ pub(super) const SIZE_OF_EM: f64 = 1.24;
 pub(super) fn register() -> Result<(), FigureError> {
     static DONE: OnceLock<bool> = OnceLock::new();
     let known = DONE.get_or_init(|| register_font(FAMILY, FontStyle::Normal, TTF).is_ok());
-    if *known {
-        Ok(())
-    } else {
-        Err(FigureError::Font)
-    }
+    if *known { Ok(()) } else { Err(FigureError::Font) }
 }
 
 /// Width of a line of text in pixels when the em is `em` pixels.
@@ -54,11 +45,7 @@ pub(super) fn wrap(text: &str, em: f64, limit: f64) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
     for word in text.split_whitespace() {
-        let longer = if line.is_empty() {
-            word.to_string()
-        } else {
-            format!("{line} {word}")
-        };
+        let longer = if line.is_empty() { word.to_string() } else { format!("{line} {word}") };
         if width(&longer, em) <= limit {
             line = longer;
             continue;

@@ -105,20 +105,12 @@ impl Frame {
 
     /// One pixel towards larger x.
     pub fn along_x(&self) -> Xy {
-        if self.sideways {
-            (0.0, 1.0)
-        } else {
-            (1.0, 0.0)
-        }
+        if self.sideways { (0.0, 1.0) } else { (1.0, 0.0) }
     }
 
     /// One pixel towards larger y.
     pub fn along_y(&self) -> Xy {
-        if self.sideways {
-            (1.0, 0.0)
-        } else {
-            (0.0, -1.0)
-        }
+        if self.sideways { (1.0, 0.0) } else { (0.0, -1.0) }
     }
 
     /// Flags a value that cannot be drawn: a triangle at the edge of the plot beyond which it lies,
@@ -177,11 +169,7 @@ pub(super) fn small_triangle(canvas: &mut Canvas, tip: Xy, forward: Xy, ink: Ink
 fn triangle(tip: Xy, forward: Xy, length: f64, half: f64) -> Vec<Xy> {
     let base = (tip.0 - length * forward.0, tip.1 - length * forward.1);
     let side = (-half * forward.1, half * forward.0);
-    vec![
-        tip,
-        (base.0 + side.0, base.1 + side.1),
-        (base.0 - side.0, base.1 - side.1),
-    ]
+    vec![tip, (base.0 + side.0, base.1 + side.1), (base.0 - side.0, base.1 - side.1)]
 }
 
 /// A small cross with a white rim.

@@ -78,11 +78,8 @@ fn add_references(entries: &mut Vec<Entry>, panel: &Panel, sideways: bool) {
     for region in &panel.regions {
         add(entries, &region.label, region.colour, Sign::Region);
     }
-    let (at_x, at_y) = if sideways {
-        (Sign::LevelLine, Sign::UprightLine)
-    } else {
-        (Sign::UprightLine, Sign::LevelLine)
-    };
+    let (at_x, at_y) =
+        if sideways { (Sign::LevelLine, Sign::UprightLine) } else { (Sign::UprightLine, Sign::LevelLine) };
     for mark in &panel.marks {
         match mark {
             Mark::Vertical { label, colour, .. } => add(entries, label, *colour, at_x),
@@ -96,17 +93,11 @@ fn add(entries: &mut Vec<Entry>, label: &str, colour: Colour, sign: Sign) {
     if label.trim().is_empty() {
         return;
     }
-    let known = entries
-        .iter_mut()
-        .find(|entry| entry.label == label && entry.colour == colour);
+    let known = entries.iter_mut().find(|entry| entry.label == label && entry.colour == colour);
     match known {
         Some(entry) if entry.signs.contains(&sign) => {}
         Some(entry) => entry.signs.push(sign),
-        None => entries.push(Entry {
-            label: label.to_string(),
-            colour,
-            signs: vec![sign],
-        }),
+        None => entries.push(Entry { label: label.to_string(), colour, signs: vec![sign] }),
     }
 }
 

@@ -8,13 +8,7 @@ use super::{Colour, Mark, Region};
 pub(super) fn region(canvas: &mut Canvas, frame: &Frame, region: &Region) {
     let (from, to) = (frame.x.place(region.from), frame.x.place(region.to));
     if from == Place::Nowhere || to == Place::Nowhere {
-        frame.flag(
-            canvas,
-            Place::Nowhere,
-            Place::Inside(0.0),
-            region.colour,
-            false,
-        );
+        frame.flag(canvas, Place::Nowhere, Place::Inside(0.0), region.colour, false);
         return;
     }
     if from.nearest() == to.nearest() {

@@ -24,16 +24,8 @@ struct Form {
     pieces: bool,
 }
 
-const SVG: Form = Form {
-    unit: 10.0,
-    drop: 0.76,
-    pieces: false,
-};
-const PNG: Form = Form {
-    unit: 4.0,
-    drop: SIZE_OF_EM / 2.0,
-    pieces: true,
-};
+const SVG: Form = Form { unit: 10.0, drop: 0.76, pieces: false };
+const PNG: Form = Form { unit: 4.0, drop: SIZE_OF_EM / 2.0, pieces: true };
 
 /// The canvas as SVG text. `description`: the text alternative.
 pub(super) fn svg(canvas: &Canvas, description: &str) -> Result<String, FigureError> {
@@ -142,11 +134,7 @@ fn paint_shape<B: DrawingBackend>(
             let corners: Vec<_> = points.iter().map(at).collect();
             area.draw(&Polygon::new(corners, colour(*ink)))
         }
-        Shape::Disc {
-            centre,
-            radius,
-            ink,
-        } => {
+        Shape::Disc { centre, radius, ink } => {
             let radius = (radius * form.unit).round() as i32;
             area.draw(&Circle::new(at(centre), radius, colour(*ink).filled()))
         }
@@ -187,15 +175,7 @@ fn paint_text<B: DrawingBackend>(
     shape: &Shape,
     form: Form,
 ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
-    let Shape::Text {
-        text,
-        at,
-        em,
-        anchor,
-        upward,
-        ink,
-    } = shape
-    else {
+    let Shape::Text { text, at, em, anchor, upward, ink } = shape else {
         return Ok(());
     };
     let side = match anchor {
@@ -212,9 +192,7 @@ fn paint_text<B: DrawingBackend>(
     };
     let font = (FAMILY, em * form.unit * SIZE_OF_EM).into_font();
     let colour = colour(*ink);
-    let style = TextStyle::from(font.transform(turn))
-        .color(&colour)
-        .pos(Pos::new(side, VPos::Top));
+    let style = TextStyle::from(font.transform(turn)).color(&colour).pos(Pos::new(side, VPos::Top));
     area.draw(&Text::new(text.as_str(), pixel(position, form.unit), style))
 }
 

@@ -68,31 +68,19 @@ impl<'a> Plan<'a> {
         let (axis, extent) = self.upright_axis();
         self.upright = ticks(axis, extent, self.height, Direction::Upright);
         let labels = self.upright.labelled.iter();
-        self.names = labels
-            .map(|(_, label)| font::wrap(label, TICK_EM, NAMES * width))
-            .collect();
+        self.names = labels.map(|(_, label)| font::wrap(label, TICK_EM, NAMES * width)).collect();
         let widths = self.names.iter().flatten();
-        let widest = widths
-            .map(|line| font::width(line, TICK_EM))
-            .fold(0.0, f64::max);
+        let widest = widths.map(|line| font::width(line, TICK_EM)).fold(0.0, f64::max);
         let label = font::wrap(&axis.label, LABEL_EM, self.height).len() as f64;
         self.left = label * font::line_height(LABEL_EM) + 4.0 + widest + GAP + TICK;
     }
 
     fn upright_axis(&self) -> (&'a Axis, Extent) {
-        if self.sideways {
-            (&self.panel.x, self.x)
-        } else {
-            (&self.panel.y, self.y)
-        }
+        if self.sideways { (&self.panel.x, self.x) } else { (&self.panel.y, self.y) }
     }
 
     fn level_axis(&self) -> (&'a Axis, Extent) {
-        if self.sideways {
-            (&self.panel.y, self.y)
-        } else {
-            (&self.panel.x, self.x)
-        }
+        if self.sideways { (&self.panel.y, self.y) } else { (&self.panel.x, self.x) }
     }
 
     /// Height of the title.
@@ -225,18 +213,12 @@ impl<'a> Plan<'a> {
 /// Vertical pixel of a value on the upright axis; categories of a panel on its side run downwards.
 fn pixel_of(frame: &Frame, extent: Extent, value: f64, downwards: bool) -> f64 {
     let share = extent.place(value).nearest();
-    if downwards {
-        frame.top + share * frame.height
-    } else {
-        frame.bottom() - share * frame.height
-    }
+    if downwards { frame.top + share * frame.height } else { frame.bottom() - share * frame.height }
 }
 
 /// Whether the category names of an axis fit beside one another on `width` pixels.
 fn names_fit(axis: &Axis, width: f64) -> bool {
     let names = axis.categories.iter();
-    let widest = names
-        .map(|name| font::width(name, TICK_EM))
-        .fold(0.0, f64::max);
+    let widest = names.map(|name| font::width(name, TICK_EM)).fold(0.0, f64::max);
     (widest + 10.0) * axis.categories.len() as f64 <= width
 }

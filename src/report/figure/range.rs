@@ -68,22 +68,14 @@ fn apart(low: f64, high: f64, log: bool) -> Extent {
         let low = low.clamp(SMALLEST, LARGEST / 10.0);
         let high = high.clamp(SMALLEST, LARGEST);
         let close = high / low < 1.0 + 1e-9;
-        if close {
-            (low / 2.0, low * 2.0)
-        } else {
-            (low, high)
-        }
+        if close { (low / 2.0, low * 2.0) } else { (low, high) }
     } else {
         let low = low.clamp(-LARGEST, LARGEST);
         let high = high.clamp(-LARGEST, LARGEST);
         let size = low.abs().max(high.abs());
         let close = high - low <= 1e-9 * size;
         let step = if size > 0.0 { 0.5 * size } else { 1.0 };
-        if close {
-            (low - step, low + step)
-        } else {
-            (low, high)
-        }
+        if close { (low - step, low + step) } else { (low, high) }
     };
     Extent { low, high, log }
 }

@@ -118,10 +118,7 @@ fn bars(canvas: &mut Canvas, frame: &Frame, drawn: &Drawn) {
 /// Draws a line through the points, cut at the frame and broken where a point has no place.
 fn curve(canvas: &mut Canvas, frame: &Frame, series: &Series) {
     let ink = Ink::of(series.colour);
-    let shares = series
-        .points
-        .iter()
-        .map(|point| Some((frame.x.share(point.x)?, frame.y.share(point.y)?)));
+    let shares = series.points.iter().map(|point| Some((frame.x.share(point.x)?, frame.y.share(point.y)?)));
     let shares: Vec<Option<Xy>> = shares.collect();
     for run in shares.split(Option::is_none) {
         let run: Vec<Xy> = run.iter().flatten().copied().collect();
@@ -195,11 +192,7 @@ fn error_bar(canvas: &mut Canvas, frame: &Frame, drawn: &Drawn, point: &Point) {
         return;
     }
     let bars = drawn.series.style == Style::Bars;
-    let ink = if bars {
-        Ink::TEXT
-    } else {
-        Ink::of(drawn.series.colour)
-    };
+    let ink = if bars { Ink::TEXT } else { Ink::of(drawn.series.colour) };
     let (from, to) = (frame.at(x, low.nearest()), frame.at(x, high.nearest()));
     canvas.line(from, to, 1.2, ink);
     for (end, at) in [(low, from), (high, to)] {
@@ -230,11 +223,7 @@ fn flags(canvas: &mut Canvas, frame: &Frame, drawn: &Drawn) {
         }
         // on its own bar a flag would not be seen
         let on_bar = drawn.series.style == Style::Bars && y == Place::Above;
-        let colour = if on_bar {
-            Colour::Black
-        } else {
-            drawn.series.colour
-        };
+        let colour = if on_bar { Colour::Black } else { drawn.series.colour };
         frame.flag(canvas, x, y, colour, curve);
         last = Some(at);
     }

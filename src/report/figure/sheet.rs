@@ -27,10 +27,7 @@ pub(super) fn draw(figure: &Figure) -> Canvas {
     let mut plans: Vec<Plan> = plans.map(|p| Plan::new(p, cell, height)).collect();
     align(&mut plans, columns);
 
-    let mut canvas = Canvas {
-        width,
-        ..Canvas::default()
-    };
+    let mut canvas = Canvas { width, ..Canvas::default() };
     let mut y = draw_title(&mut canvas, &figure.title, MARGIN);
     let sideways: Vec<bool> = plans.iter().map(|plan| plan.sideways).collect();
     let inner = width - 2.0 * MARGIN;
@@ -92,9 +89,5 @@ fn draw_note(canvas: &mut Canvas, top: f64) -> f64 {
         small_cross(canvas, (x + 5.0, middle), Ink::AXIS);
         canvas.text("not a number", (x + 16.0, baseline), NOTE_EM, Anchor::Start);
     }
-    if canvas.beyond || canvas.missing {
-        baseline + 4.0
-    } else {
-        top - 8.0
-    }
+    if canvas.beyond || canvas.missing { baseline + 4.0 } else { top - 8.0 }
 }

@@ -2,23 +2,14 @@ use super::*;
 use crate::report::figure::canvas::{Canvas, Shape};
 
 fn series(style: Style, points: Vec<Point>) -> Series {
-    Series {
-        label: "data".to_string(),
-        colour: Colour::Blue,
-        style,
-        points,
-    }
+    Series { label: "data".to_string(), colour: Colour::Blue, style, points }
 }
 
 fn figure(y: Axis, series: Vec<Series>) -> Figure {
     Figure {
         title: "title".to_string(),
         alt: "what is seen".to_string(),
-        panels: vec![Panel {
-            y,
-            series,
-            ..Panel::default()
-        }],
+        panels: vec![Panel { y, series, ..Panel::default() }],
         columns: 1,
     }
 }
@@ -66,12 +57,7 @@ fn text_is_wrapped_at_spaces_and_within_long_words() {
 
 #[test]
 fn values_without_a_place_are_flagged_not_drawn() {
-    for style in [
-        Style::Line,
-        Style::Dashed,
-        Style::Markers(Marker::Circle),
-        Style::Bars,
-    ] {
+    for style in [Style::Line, Style::Dashed, Style::Markers(Marker::Circle), Style::Bars] {
         for value in [0.0, -1.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
             let points = vec![Point::new(1.0, 1.0), Point::new(2.0, value)];
             let canvas = drawn(&figure(Axis::log("y"), vec![series(style, points)]));
@@ -93,10 +79,7 @@ fn values_out_of_a_given_range_are_flagged() {
 
 #[test]
 fn an_ordinary_figure_has_no_flags() {
-    let points = vec![
-        Point::between(1.0, 1.0, 0.5, 2.0),
-        Point::between(9.0, 100.0, 90.0, 120.0),
-    ];
+    let points = vec![Point::between(1.0, 1.0, 0.5, 2.0), Point::between(9.0, 100.0, 90.0, 120.0)];
     for axis in [Axis::log("y"), Axis::linear("y")] {
         for style in [Style::LineMarkers(Marker::Cross), Style::Bars] {
             let canvas = drawn(&figure(axis.clone(), vec![series(style, points.clone())]));
@@ -118,26 +101,17 @@ fn flags_of_several_series_do_not_cover_one_another() {
 fn strange_figures_do_not_panic() {
     assert!(svg(&Figure::default()).is_ok());
     let extremes = [0.0, 1.0, -1.0, 1e-320, 1e308, -1e308, f64::MAX, f64::NAN];
-    let ranges = extremes
-        .iter()
-        .flat_map(|&low| extremes.map(|high| Some((low, high))))
-        .chain([None]);
+    let ranges = extremes.iter().flat_map(|&low| extremes.map(|high| Some((low, high)))).chain([None]);
     for range in ranges {
         for scale in [Scale::Linear, Scale::Log] {
-            let axis = Axis {
-                range,
-                scale,
-                ..Axis::default()
-            };
+            let axis = Axis { range, scale, ..Axis::default() };
             let points = extremes.map(|v| Point::between(v, v, -v, f64::INFINITY));
             let mut figure = figure(axis.clone(), vec![series(Style::Dashed, vec![])]);
             figure.columns = 0;
             figure.panels[0].x = axis;
             drawn(&figure);
-            figure.panels[0].series = vec![
-                series(Style::Dotted, points.to_vec()),
-                series(Style::Bars, points.to_vec()),
-            ];
+            figure.panels[0].series =
+                vec![series(Style::Dotted, points.to_vec()), series(Style::Bars, points.to_vec())];
             drawn(&figure);
         }
     }
@@ -146,10 +120,7 @@ fn strange_figures_do_not_panic() {
 #[test]
 fn linear_ticks_are_short_decimals() {
     let points = vec![Point::new(0.0, 0.0), Point::new(1.0, 0.7)];
-    let canvas = drawn(&figure(
-        Axis::linear("y"),
-        vec![series(Style::Line, points)],
-    ));
+    let canvas = drawn(&figure(Axis::linear("y"), vec![series(Style::Line, points)]));
     assert!(texts(&canvas).contains(&"0.3"));
     assert!(texts(&canvas).iter().all(|text| text.len() < 9));
 }
@@ -188,15 +159,9 @@ fn many_categories_lie_on_their_side() {
 #[test]
 fn a_label_is_listed_once_for_curve_and_markers() {
     let points = vec![Point::new(0.0, 1.0), Point::new(1.0, 2.0)];
-    let data = vec![
-        series(Style::Dashed, points.clone()),
-        series(Style::Markers(Marker::Circle), points),
-    ];
+    let data = vec![series(Style::Dashed, points.clone()), series(Style::Markers(Marker::Circle), points)];
     let canvas = drawn(&figure(Axis::linear("y"), data));
-    let listed = texts(&canvas)
-        .iter()
-        .filter(|text| **text == "data")
-        .count();
+    let listed = texts(&canvas).iter().filter(|text| **text == "data").count();
     assert_eq!(listed, 1);
 }
 

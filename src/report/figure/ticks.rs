@@ -28,11 +28,7 @@ pub(super) fn ticks(axis: &Axis, extent: Extent, length: f64, direction: Directi
     if !axis.categories.is_empty() {
         return categories(axis, extent);
     }
-    let candidates = if extent.log {
-        log_candidates(extent)
-    } else {
-        linear_candidates(extent)
-    };
+    let candidates = if extent.log { log_candidates(extent) } else { linear_candidates(extent) };
     let fits = |ticks: &Ticks| fits(ticks, extent, length, direction);
     let chosen = candidates.iter().position(fits);
     let mut candidates = candidates;
@@ -97,11 +93,7 @@ impl Step {
     /// `count` steps, correctly rounded: no 0.30000000000000004.
     fn times(self, count: f64) -> f64 {
         let digits = count * self.digit;
-        if self.power < 0 {
-            digits / 10f64.powi(-self.power)
-        } else {
-            digits * 10f64.powi(self.power)
-        }
+        if self.power < 0 { digits / 10f64.powi(-self.power) } else { digits * 10f64.powi(self.power) }
     }
 }
 
@@ -188,11 +180,7 @@ fn log_ticks(extent: Extent, digits: &[i32], stride: i32) -> Ticks {
 /// The value `digit` times ten to the `power` and its label; `powers`: always as a power.
 fn log_tick(digit: i32, power: i32, powers: bool) -> (f64, String) {
     let digits = f64::from(digit);
-    let value = if power < 0 {
-        digits / 10f64.powi(-power)
-    } else {
-        digits * 10f64.powi(power)
-    };
+    let value = if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) };
     let label = if powers {
         power_of_ten(power)
     } else if (-3..=3).contains(&power) {

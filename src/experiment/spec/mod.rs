@@ -1,0 +1,83 @@
+//! An experiment file, exactly as it was written.
+
+mod claim;
+mod scene;
+mod walk;
+
+pub use claim::{Claim, Limits, Plot, Quantity};
+pub use scene::{
+    FurnaceSpec, LooksAt, PrimitiveSpec, PrimitivesSpec, SceneSpec, SensorSpec, ShapeSpec, SphereSpec,
+};
+pub use walk::{EstimatorSpec, RouletteSpec};
+
+use super::error::Error;
+use super::input::{self, Named, Tables};
+use serde::Deserialize;
+use std::path::Path;
+use toml::Spanned;
+
+/// An experiment file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Spec {
+    /// What the experiment asks.
+    pub question: String,
+    /// What was found when it was last looked at.
+    #[serde(default)]
+    pub answer: String,
+    /// All chance follows from it.
+    #[serde(default = "one")]
+    pub seed: u64,
+    /// Whether cells share their random numbers.
+    #[serde(default)]
+    pub streams: Streams,
+    /// Realizations a cell: paths for a probe, image passes (samples a pixel) for a camera.
+    #[serde(deserialize_with = "input::samples")]
+    pub samples: u64,
+    /// Where theory gives a cell's variance, it gets as many realizations as its claim needs, up to this many.
+    #[serde(default, deserialize_with = "input::optional_samples")]
+    pub max_samples: Option<u64>,
+    /// What is run: every combination within each grid.
+    pub grid: Tables<Grid>,
+    /// What is claimed of the cells.
+    #[serde(default)]
+    pub claim: Vec<Claim>,
+    /// What is drawn.
+    #[serde(default)]
+    pub plot: Vec<Plot>,
+}
+
+fn one() -> u64 {
+    1
+}
+
+/// Whether cells share their random numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Streams {
+    /// Each cell has its own.
+    #[default]
+    Independent,
+    /// Cells of one scene share theirs (common random numbers).
+    Paired,
+}
+
+/// Every combination of the listed scenes, estimators and termination rules.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grid {
+    /// Scenes.
+    pub scene: Spanned<Vec<Spanned<Named<SceneSpec>>>>,
+    /// Estimators.
+    pub estimator: Spanned<Vec<Spanned<Named<EstimatorSpec>>>>,
+    /// Termination rules.
+    pub roulette: Spanned<Vec<Spanned<Named<RouletteSpec>>>>,
+    /// Realizations a cell of this grid, instead of the file's.
+    #[serde(default, deserialize_with = "input::optional_samples")]
+    pub samples: Option<u64>,
+}
+
+/// Reads an experiment file; `source` is its text.
+pub fn parse(file: &Path, source: &str) -> Result<Spec, Error> {
+    toml::from_str(source).map_err(|error| Error::toml(file, source, &error))
+}

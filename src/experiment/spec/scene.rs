@@ -1,0 +1,248 @@
+//! Scenes as files write them.
+
+use crate::experiment::input::{self, Sweep};
+use crate::scene::Rgb;
+use crate::scene::camera::Pinhole;
+use crate::scene::geometry::{Disk, Rectangle, Triangle};
+use crate::scene::library::View;
+use glam::DVec3;
+use serde::Deserialize;
+
+/// A scene.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SceneSpec {
+    /// See [`crate::scene::library::SceneKind::Furnace`].
+    Furnace(FurnaceSpec),
+    /// See [`crate::scene::library::SceneKind::FurnaceBox`].
+    FurnaceBox(FurnaceSpec),
+    /// See [`crate::scene::library::SceneKind::IntegratingSphere`].
+    IntegratingSphere(SphereSpec),
+    /// See [`crate::scene::library::SceneKind::CornellBox`].
+    CornellBox(CornellSpec),
+    /// See [`crate::scene::library::SceneKind::CornellEmpty`].
+    CornellEmpty(CornellSpec),
+    /// Written out primitive by primitive.
+    Primitives(PrimitivesSpec),
+}
+
+/// A closed enclosure of one material.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FurnaceSpec {
+    /// Albedo, one number or one a channel.
+    #[serde(deserialize_with = "input::albedo")]
+    pub albedo: Rgb,
+    /// Emitted radiance.
+    #[serde(deserialize_with = "input::radiance")]
+    pub emission: Rgb,
+    /// `probe` or `irradiance`.
+    pub view: View,
+}
+
+impl Default for FurnaceSpec {
+    fn default() -> Self {
+        FurnaceSpec { albedo: Rgb::splat(0.5), emission: Rgb::ONE, view: View::Probe }
+    }
+}
+
+/// An integrating sphere: a light, further patches if any, and the wall that fills the rest.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SphereSpec {
+    /// The light's fraction of the sphere's area.
+    #[serde(deserialize_with = "input::fractions")]
+    pub light_fraction: Sweep,
+    /// What the light reflects.
+    #[serde(deserialize_with = "input::albedo")]
+    pub light_albedo: Rgb,
+    /// What the light emits.
+    #[serde(deserialize_with = "input::radiance")]
+    pub emission: Rgb,
+    /// What the wall reflects.
+    #[serde(deserialize_with = "input::albedo")]
+    pub wall_albedo: Rgb,
+    /// Further patches.
+    pub patches: Vec<PatchSpec>,
+    /// What a probe looks at.
+    pub looks_at: LooksAt,
+    /// `probe` or `irradiance`.
+    pub view: View,
+}
+
+impl Default for SphereSpec {
+    fn default() -> Self {
+        SphereSpec {
+            light_fraction: Sweep(vec![0.05]),
+            light_albedo: Rgb::splat(0.4),
+            emission: Rgb::splat(5.0),
+            wall_albedo: Rgb::splat(0.6),
+            patches: Vec::new(),
+            looks_at: LooksAt::Wall,
+            view: View::Probe,
+        }
+    }
+}
+
+/// A patch of an integrating sphere.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatchSpec {
+    /// Fraction of the sphere's area.
+    #[serde(deserialize_with = "input::probability")]
+    pub fraction: f64,
+    /// What it reflects.
+    #[serde(deserialize_with = "input::albedo")]
+    pub albedo: Rgb,
+    /// What it emits.
+    #[serde(default, deserialize_with = "input::radiance")]
+    pub emission: Rgb,
+}
+
+/// What a probe in an integrating sphere looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LooksAt {
+    /// The wall.
+    Wall,
+    /// The light.
+    Light,
+}
+
+/// A Cornell box.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CornellSpec {
+    /// Pixels along each edge of the image.
+    #[serde(deserialize_with = "input::resolution")]
+    pub resolution: u32,
+}
+
+impl Default for CornellSpec {
+    fn default() -> Self {
+        CornellSpec { resolution: 32 }
+    }
+}
+
+/// A scene written out in the file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrimitivesSpec {
+    /// What it is called in results.
+    pub name: String,
+    /// Its surfaces.
+    pub primitives: Vec<PrimitiveSpec>,
+    /// What is measured.
+    pub sensor: SensorSpec,
+}
+
+/// A surface written out in the file.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrimitiveSpec {
+    /// Where it is.
+    pub shape: ShapeSpec,
+    /// What it reflects.
+    #[serde(default, deserialize_with = "input::albedo")]
+    pub albedo: Rgb,
+    /// What it emits.
+    #[serde(default, deserialize_with = "input::radiance")]
+    pub emission: Rgb,
+}
+
+/// A shape written out in the file; it shows one side, the front, and is black from behind.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum ShapeSpec {
+    /// Front = half_u x half_v.
+    Rectangle(Rectangle),
+    /// Counter-clockwise as seen from the front.
+    Triangle(Triangle),
+    /// A circular plate.
+    Disk(Disk),
+    /// A whole sphere.
+    Sphere {
+        /// Centre.
+        #[serde(deserialize_with = "input::vector")]
+        center: DVec3,
+        /// Radius.
+        #[serde(deserialize_with = "input::length")]
+        radius: f64,
+        /// Whether the front is the inside.
+        #[serde(default)]
+        inward: bool,
+    },
+    /// A band of a sphere.
+    SpherePatch {
+        /// Centre.
+        #[serde(deserialize_with = "input::vector")]
+        center: DVec3,
+        /// Radius.
+        #[serde(deserialize_with = "input::length")]
+        radius: f64,
+        /// The pole.
+        #[serde(deserialize_with = "input::direction")]
+        axis: DVec3,
+        /// Cosine to the axis at the lower edge.
+        low: f64,
+        /// Cosine to the axis at the upper edge.
+        high: f64,
+        /// Whether the front is the inside.
+        #[serde(default)]
+        inward: bool,
+    },
+}
+
+/// A sensor written out in the file.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SensorSpec {
+    /// One ray.
+    Probe {
+        /// Where the eye is.
+        #[serde(deserialize_with = "input::vector")]
+        origin: DVec3,
+        /// Where it looks.
+        #[serde(deserialize_with = "input::direction")]
+        direction: DVec3,
+    },
+    /// A small plate in free space.
+    Irradiance {
+        /// Where it is.
+        #[serde(deserialize_with = "input::vector")]
+        point: DVec3,
+        /// Where it faces.
+        #[serde(deserialize_with = "input::direction")]
+        normal: DVec3,
+    },
+    /// A pinhole camera with square images.
+    Camera {
+        /// Where the eye is.
+        #[serde(deserialize_with = "input::vector")]
+        origin: DVec3,
+        /// Where it looks.
+        #[serde(deserialize_with = "input::direction")]
+        direction: DVec3,
+        /// Which way is up.
+        #[serde(deserialize_with = "input::direction")]
+        up: DVec3,
+        /// Full field of view [degrees].
+        #[serde(deserialize_with = "input::field_of_view")]
+        fov: f64,
+        /// Pixels along each edge.
+        #[serde(deserialize_with = "input::resolution")]
+        resolution: u32,
+    },
+}
+
+impl SensorSpec {
+    /// The camera, if it is one.
+    pub fn pinhole(&self) -> Option<Pinhole> {
+        match *self {
+            SensorSpec::Camera { origin, direction, up, fov, resolution } => {
+                Some(Pinhole::new(origin, direction, up, fov, (resolution, resolution)))
+            }
+            _ => None,
+        }
+    }
+}

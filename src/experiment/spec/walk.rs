@@ -1,0 +1,89 @@
+//! Estimators and termination rules as files write them.
+
+use crate::experiment::input::{self, Sweep};
+use crate::scene::{Directions, LightSampling};
+use serde::Deserialize;
+
+/// An estimator.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum EstimatorSpec {
+    /// N samples at each vertex.
+    Recursive {
+        /// N.
+        #[serde(deserialize_with = "input::positive_counts")]
+        samples: Sweep,
+        /// The largest number of bounces.
+        #[serde(deserialize_with = "input::counts")]
+        depth: Sweep,
+        /// How directions are drawn.
+        #[serde(default)]
+        directions: Directions,
+    },
+    /// One sample at each vertex.
+    Implicit {
+        /// How directions are drawn.
+        #[serde(default)]
+        directions: Directions,
+    },
+    /// Direct light sampled on the emitters.
+    Explicit {
+        /// How points on emitters are drawn.
+        #[serde(default)]
+        lights: LightSampling,
+        /// How directions are drawn.
+        #[serde(default)]
+        directions: Directions,
+    },
+}
+
+/// A termination rule.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RouletteSpec {
+    /// Nothing but the estimator's own depth ends a walk.
+    None {},
+    /// No roulette; light scattered more often is left out.
+    DepthClamp {
+        /// The largest number of bounces.
+        #[serde(deserialize_with = "input::counts")]
+        bounces: Sweep,
+    },
+    /// The same q everywhere.
+    Constant {
+        /// Expected number of continuations.
+        #[serde(deserialize_with = "input::survival")]
+        q: Sweep,
+        /// The first so many bounces are certain.
+        #[serde(default)]
+        from: u32,
+        /// The largest number of bounces.
+        #[serde(default)]
+        clamp: Option<u32>,
+    },
+    /// q = largest channel of the albedo.
+    Albedo {
+        /// The first so many bounces are certain.
+        #[serde(default)]
+        from: u32,
+        /// The largest number of bounces.
+        #[serde(default)]
+        clamp: Option<u32>,
+    },
+    /// q = largest channel of the throughput.
+    Throughput {
+        /// Lower limit of q.
+        #[serde(default = "small", deserialize_with = "input::probability")]
+        floor: f64,
+        /// The first so many bounces are certain.
+        #[serde(default)]
+        from: u32,
+        /// The largest number of bounces.
+        #[serde(default)]
+        clamp: Option<u32>,
+    },
+}
+
+fn small() -> f64 {
+    0.05
+}
