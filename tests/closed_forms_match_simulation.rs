@@ -2,8 +2,8 @@
 //! draws patches one after the other, and the real estimators in the real scenes. Means, variances, third and fourth
 //! moments and rays, in total and (mean and variance) bounce by bounce.
 //!
-//! False alarms: about 2000 t tests with 63 degrees of freedom, each beyond [`LIMIT`] with probability 1e-14, together
-//! 2e-11; a factor of 50 is left for what skewness does to t. Cases are such that all moments to the eighth are finite.
+//! False alarms: about 3600 t tests with 63 degrees of freedom, each beyond [`LIMIT`] with probability 1.2e-14, together
+//! 5e-11; the rest up to 1e-9 is left for what skewness does to t. Cases are such that all moments to the eighth are finite.
 
 use furnace::estimator::{BINS, Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
 use furnace::experiment::sample;

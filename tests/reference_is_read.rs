@@ -5,7 +5,7 @@ use furnace::scene::Rgb;
 use furnace::scene::library::{Patch, SceneKind, View};
 use furnace::truth::{Reference, reference::Stored};
 
-/// Scene, image mean, and the standard error of that mean, from 32 independent renderings.
+/// Scene, image mean, and the standard error of that mean.
 fn stated() -> [(SceneKind, Rgb, Rgb); 2] {
     let resolution = 32;
     [
@@ -43,9 +43,8 @@ fn image_means_are_those_stated() {
     }
 }
 
-/// From pixel errors the image's error follows only if pixels are independent; the stated one, from the scatter of
-/// whole renderings, needs no such assumption. With 31 degrees of freedom that one is itself known to
-/// 1/sqrt(62) = 13 % only, so agreement to 10 % is as much as can be asked for.
+/// Pixels are taken as independent: the squares of their errors add. An error from 32 renderings is itself known to
+/// 1/sqrt(62) = 13 % only; the stated numbers have two digits and are asked for to 10 %.
 #[test]
 fn image_errors_are_those_stated() {
     for (scene, _, error) in stated() {

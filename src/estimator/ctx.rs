@@ -53,7 +53,7 @@ impl<'a> Ctx<'a> {
 
     /// Traces a ray: the lit side of the nearest surface, or `None` for the void and for black backs.
     #[inline]
-    pub fn hit(&mut self, ray: &Ray) -> Option<Hit> {
+    pub fn hit(&mut self, ray: &Ray) -> Option<Hit<'a>> {
         self.tally.rays += 1;
         if self.tally.rays > self.limit {
             self.tally.runaway += 1;
@@ -94,7 +94,7 @@ impl<'a> Ctx<'a> {
     /// Next-event estimation: the radiance that `x` reflects of one sampled point on an emitter,
     /// f cos θ le V / pdf [Veach 1997, eq. 8.2], or zero where nothing arrives.
     #[inline]
-    pub fn direct(&mut self, x: &Hit, lights: LightSampling) -> Rgb {
+    pub fn direct(&mut self, x: &Hit<'_>, lights: LightSampling) -> Rgb {
         let pick = if self.scene.light_count() > 1 { self.u1() } else { 0.0 };
         let point = self.u2();
         let Some(light) = self.scene.sample_light(lights, x.p, pick, point) else { return Rgb::ZERO };
@@ -107,14 +107,14 @@ impl<'a> Ctx<'a> {
 
     /// A continued direction at `x`: the ray, and f cos θ / pdf.
     #[inline]
-    pub fn scatter(&mut self, x: &Hit, directions: Directions) -> (Ray, Rgb) {
-        let s = directions.sample(&x.material, &x.frame, self.u2());
+    pub fn scatter(&mut self, x: &Hit<'_>, directions: Directions) -> (Ray, Rgb) {
+        let s = directions.sample(x.material, &x.frame, self.u2());
         (x.spawn(s.wi), s.weight)
     }
 
     /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface.
     #[inline]
-    fn visible(&mut self, x: &Hit, to_light: DVec3, surface: u32) -> bool {
+    fn visible(&mut self, x: &Hit<'_>, to_light: DVec3, surface: u32) -> bool {
         self.tally.rays += 1;
         self.scene.visible(&x.spawn(to_light), surface)
     }

@@ -1,4 +1,4 @@
-//! Estimators of radiance. A new one is one file and three lines here: `mod`, a variant, an arm of `each`.
+//! Estimators of radiance. A new one is one file and a few lines here: `mod`, a variant, its arms.
 
 pub mod ctx;
 pub mod explicit;
@@ -94,10 +94,6 @@ impl Estimate for Estimator {
     }
 
     fn property(&self) -> Property {
-        match self {
-            Estimator::Recursive(e) => e.property(),
-            Estimator::Implicit(e) => e.property(),
-            Estimator::Explicit(e) => e.property(),
-        }
+        Property::of(self.roulette())
     }
 }

@@ -132,7 +132,11 @@ impl Subject<'_> {
         } else {
             row.std_error = blocks.std_error();
             row.variance = total.variance();
-            row.rate(total.variance_std_error());
+            if known == Known::Value(0.0) {
+                row.note = "noise-free".to_owned();
+            } else {
+                row.rate(total.variance_std_error());
+            }
         }
         let question = if let Some(closed) = self.closed {
             let (truth, expected) =
@@ -284,6 +288,7 @@ impl Subject<'_> {
         let tiles = TILES as usize;
         let stored = reference.tile(tiles, tile % tiles, tile / tiles);
         let claim = sheet.claim(Claim::tiles);
+        let image = reference.image().mean;
         for channel in 0..3 {
             let measured = self.cell.tiles[tile][channel];
             let mut row = self.row(Estimand::Tile(tile), Some(channel), measured.mean);
@@ -291,10 +296,10 @@ impl Subject<'_> {
             let expected = self.plan.is_unbiased().then_some(stored.mean[channel]);
             row.against(stored.mean[channel], stored.std_error[channel], expected, "independent renderer");
             sheet.state(row);
-            if let (Some((claim, margin)), Some(expected)) = (claim, expected) {
+            if let (Some((claim, margin)), Some(_)) = (claim, expected) {
                 let question = self.against_stored(&self.cell.blocks[channel], &stored, channel);
                 let (mean, std_error) = (measured.mean, measured.std_error);
-                sheet.ask(claim, Question { mean, std_error, margin: margin * expected, ..question });
+                sheet.ask(claim, Question { mean, std_error, margin: margin * image[channel], ..question });
             }
         }
     }

@@ -111,6 +111,10 @@ pub fn measured(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, paramete
         let x = value(lookup, cell, parameter);
         let row = |estimand, channel| lookup.row(cell, estimand, channel);
         let mean = row(Estimand::Mean, Some(curve.channel))?;
+        let image = lookup.is_image(cell);
+        // an image is rated by its pixels
+        let rated = if image { row(Estimand::PixelVariance, Some(curve.channel))? } else { mean };
+        let paths = lookup.plan.cells[cell].pixels as f64;
         let (y, error) = match quantity {
             Quantity::Bias => {
                 let scale = 100.0 / mean.truth?;
@@ -118,10 +122,14 @@ pub fn measured(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, paramete
             }
             Quantity::Variance => {
                 let error = row(Estimand::Variance, Some(curve.channel)).and_then(|r| r.std_error);
-                (mean.variance?, error.unwrap_or(0.0))
+                let error = if image { rated.std_error } else { error };
+                (rated.variance?, error.unwrap_or(0.0))
             }
-            Quantity::Cost => (row(Estimand::Cost, None)?.mean, row(Estimand::Cost, None)?.std_error?),
-            Quantity::Efficiency => (mean.efficiency?, mean.efficiency_error.unwrap_or(0.0)),
+            Quantity::Cost => {
+                let cost = row(Estimand::Cost, None)?;
+                (cost.mean / paths, cost.std_error? / paths)
+            }
+            Quantity::Efficiency => (rated.efficiency?, rated.efficiency_error.unwrap_or(0.0)),
             Quantity::Added => {
                 let bin = last_bounce(&lookup.plan.cells[cell])?;
                 let last = row(Estimand::Bounce(bin), Some(curve.channel))?;
@@ -134,8 +142,7 @@ pub fn measured(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, paramete
                 (100.0 * zeros.mean, 100.0 * error)
             }
         };
-        let noise_free =
-            matches!(quantity, Quantity::Variance | Quantity::Efficiency) && mean.std_error == Some(0.0);
+        let noise_free = quantity == Quantity::Variance && mean.note == "noise-free";
         (!noise_free).then(|| Point::between(x, y, y - Z_BAR * error, y + Z_BAR * error))
     };
     curve.cells.iter().filter_map(point).collect()

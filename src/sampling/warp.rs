@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_1_PI, PI};
 /// (sin 2πu, cos 2πu) for u in [0, 1], with the same bits on every machine.
 ///
 /// The angle is reduced to [-π/4, π/4] by quarter turns and the two Taylor series are summed to degree 15 and 16;
-/// absolute error below 3e-16 (tested against `libm`).
+/// absolute error below 4e-16 (tested against `libm`; the worst found in 2e8 arguments is 3.05e-16).
 #[inline]
 pub fn sin_cos_turn(u: f64) -> (f64, f64) {
     let quarter = (4.0 * u + 0.5) as i64; // u >= 0: the cast rounds down, and needs no call to `floor`

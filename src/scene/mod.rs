@@ -32,18 +32,18 @@ pub type Rgb = DVec3;
 
 /// The front of a surface, met by a ray.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit {
+pub struct Hit<'a> {
     /// The point [scene units].
     pub p: DVec3,
     /// Frame around the unit normal on the front side.
     pub frame: Frame,
     /// Albedo and emission at the point.
-    pub material: Material,
+    pub material: &'a Material,
     /// Which surface was hit.
     pub surface: u32,
 }
 
-impl Hit {
+impl Hit<'_> {
     /// The ray that leaves this point in the unit direction `wi`.
     #[inline]
     pub fn spawn(&self, wi: DVec3) -> Ray {
@@ -77,7 +77,7 @@ impl Scene {
 
     /// The nearest surface along the ray, if it shows its front: a back is black, as is the void around an open scene.
     #[inline]
-    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit<'_>> {
         let (mut t, mut id) = self.rectangles.nearest(ray);
         let (t_sphere, sphere) = self.spheres.nearest(ray);
         if t_sphere < t {
@@ -95,7 +95,7 @@ impl Scene {
         let surface = &self.surfaces[id as usize];
         let (p, frame) = surface.at(ray.o + t * ray.d);
         let front = frame.n.dot(ray.d) < 0.0;
-        front.then_some(Hit { p, frame, material: surface.material, surface: id })
+        front.then_some(Hit { p, frame, material: &surface.material, surface: id })
     }
 
     /// Whether nothing stands between the point `ray.o` on surface `ray.from` and `ray.o + ray.d` on surface `to`.

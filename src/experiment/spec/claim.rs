@@ -9,7 +9,7 @@ use serde::Deserialize;
 pub enum Claim {
     /// The mean, total and per bounce, is what theory or a reference says (for a clamped cell: theory's biased mean).
     Unbiased(Limits),
-    /// The means of the image's tiles are those of the reference.
+    /// The means of the image's tiles are those of the reference; the margin is relative to the image's mean.
     Tiles(Limits),
     /// The sample variance is theory's.
     Variance(Limits),
@@ -80,7 +80,7 @@ pub struct Limits {
     /// Probability of any false alarm among all questions of this claim.
     #[serde(deserialize_with = "input::inside_unit")]
     pub alpha: f64,
-    /// Largest difference that counts as none, relative to the expected total.
+    /// Largest difference that counts as none, relative to the right total.
     #[serde(deserialize_with = "input::inside_unit")]
     pub margin: f64,
 }

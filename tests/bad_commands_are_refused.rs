@@ -1,0 +1,164 @@
+//! Promise: what is typed wrongly is refused with exit status 2, one error and what would be right, before anything is
+//! sampled or written.
+
+use assert_cmd::{Command, cargo::cargo_bin};
+use std::fs;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const GOOD: &str = r#"question = "Is it refused?"
+samples = 64
+[grid]
+scene = ["furnace"]
+estimator = ["implicit"]
+roulette = ["albedo"]
+"#;
+
+/// A folder with `experiments/NAME.toml` for each of the files.
+fn place(files: &[(&str, &str)]) -> TempDir {
+    let place = tempfile::tempdir().unwrap();
+    fs::create_dir(place.path().join("experiments")).unwrap();
+    for (name, text) in files {
+        fs::write(place.path().join(format!("experiments/{name}.toml")), text).unwrap();
+    }
+    place
+}
+
+/// Runs `experiment ARGS` and holds that it refuses, in these words, and writes nothing.
+#[track_caller]
+fn refuses(place: &TempDir, args: &str, words: &[&str]) {
+    let mut command = Command::new(cargo_bin!("experiment"));
+    let output = command.args(args.split_whitespace()).current_dir(place.path()).output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{args}: {stderr}");
+    assert!(stderr.starts_with("error: "), "{args}: {stderr}");
+    assert_eq!(stderr.matches("error:").count(), 1, "{args}: {stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "{args} should say `{word}`: {stderr}");
+    }
+    let entries: Vec<_> = fs::read_dir(place.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(entries, ["experiments"], "{args} wrote something");
+}
+
+#[test]
+fn usage_errors() {
+    let place = place(&[("x", GOOD)]);
+    let cases: [(&str, &[&str]); 14] = [
+        ("x --frob", &["unexpected argument '--frob'", "--help"]),
+        ("x --sample 5", &["unexpected argument '--sample'", "'--samples'"]),
+        ("x --samples", &["a value is required for '--samples <N>'"]),
+        ("x --samples 0", &["invalid value '0' for '--samples <N>'", "not in 1.."]),
+        ("x --samples -3", &["-3"]),
+        ("x --samples 1e3", &["invalid value '1e3' for '--samples <N>'"]),
+        ("x --seed -1", &["-1"]),
+        ("x --jobs many", &["invalid value 'many' for '--jobs <N>'"]),
+        ("x --format xml", &["invalid value 'xml'", "text, json"]),
+        ("plan", &["<NAMES>"]),
+        ("report", &["<NAMES>"]),
+        ("render", &["<SCENE>"]),
+        ("render cornell_box --spp 1", &["invalid value '1' for '--spp <SPP>'", "not in 2.."]),
+        (
+            "render cornell_box --resolution 0",
+            &["invalid value '0' for '--resolution <RESOLUTION>'", "1..=4096"],
+        ),
+    ];
+    cases.iter().for_each(|(args, words)| refuses(&place, args, words));
+    let mut nothing = Command::new(cargo_bin!("experiment"));
+    nothing.current_dir(place.path()).assert().code(2);
+}
+
+#[test]
+fn names_that_nothing_has() {
+    let sweep = place(&[("rr_sweep", GOOD), ("explosion", GOOD)]);
+    refuses(&sweep, "rr_swep", &["no experiment called `rr_swep`", "did you mean `rr_sweep`?"]);
+    refuses(&sweep, "plan explosoin", &["no experiment called `explosoin`", "did you mean `explosion`?"]);
+    refuses(&sweep, "banana", &["no experiment called `banana`", "there are: explosion, rr_sweep"]);
+    // a mistake in the last name must not cost the time of the first
+    refuses(&sweep, "rr_sweep banana", &["no experiment called `banana`"]);
+    refuses(&sweep, "missing.toml", &["cannot read missing.toml", "No such file"]);
+    refuses(&sweep, "render kitchen", &["no scene `kitchen`", "there are cornell_box, cornell_empty"]);
+    refuses(&sweep, "render cornell_box --estimator bdpt", &["no estimator `bdpt`", "explicit, implicit"]);
+    refuses(&place(&[]), "anything", &["there are none in the folder experiments/"]);
+}
+
+#[test]
+fn an_experiment_named_like_a_command() {
+    for name in ["list", "plan", "report", "render", "help"] {
+        let place = place(&[(name, GOOD)]);
+        let words = format!("experiments/{name}.toml: `{name}` is a command; rename the file");
+        refuses(&place, &format!("experiments/{name}.toml"), &[&words]);
+        refuses(&place, "list", &[&words]);
+    }
+}
+
+#[test]
+fn changes_that_cannot_be() {
+    let place = place(&[("x", GOOD)]);
+    let cases: [(&str, &[&str]); 8] = [
+        ("x --set seed", &["--set seed: expected path=value"]),
+        ("x --set grid.scene.5=1", &["--set grid.scene.5=1: there is no element 5"]),
+        ("x --set seed.a=1", &["--set seed.a=1: `a` is not inside a table or list"]),
+        ("x --set grid.scene.x=1", &["`x` is not inside a table or list"]),
+        ("x --set sed=1", &["unknown field `sed`", "did you mean `seed`?"]),
+        ("x --set samples=0", &["at least 1 sample is needed"]),
+        ("x --set samples=lots", &["invalid type: string \"lots\""]),
+        ("x --set grid.roulette=[]", &["an empty list of termination rules leaves nothing to run"]),
+    ];
+    cases.iter().for_each(|(args, words)| refuses(&place, args, words));
+    refuses(&place, "x --filter nowhere", &["no cell of x has `nowhere` in its label"]);
+}
+
+#[test]
+fn grids_without_cells_and_cells_of_one_name() {
+    let head = "question = \"Is it refused?\"\nsamples = 64\n";
+    let empty = place(&[("x", &format!("{head}grid = []\n"))]);
+    refuses(&empty, "x", &["experiments/x.toml", "an empty list of grids leaves nothing to run"]);
+    let twice = GOOD.replace("[\"furnace\"]", "[\"furnace\", { furnace = { albedo = 0.3 } }]");
+    refuses(&place(&[("x", &twice)]), "x", &["two cells are both called `furnace implicit albedo`"]);
+    refuses(
+        &place(&[("x", &format!("{head}[grid]\n"))]),
+        "x",
+        &["experiments/x.toml:3:1", "missing field `scene`"],
+    );
+}
+
+#[test]
+fn a_recursion_out_of_proportion() {
+    let recursion = |n: u32, depth: u32, samples: u64| {
+        let estimator = format!("{{ recursive = {{ samples = {n}, depth = {depth} }} }}");
+        let text = GOOD.replace("\"implicit\"", &estimator).replace("\"albedo\"", "\"none\"");
+        place(&[("x", &text.replace("samples = 64", &format!("samples = {samples}")))])
+    };
+    let start = Instant::now();
+    // 4^10 is a million rays a sample: a million samples take a day
+    let long = recursion(4, 10, 1_000_000);
+    refuses(
+        &long,
+        "x",
+        &[
+            "recursive(n=4 depth=10) none",
+            "e12 rays",
+            "hours on one core",
+            "lower n, depth or samples",
+            "--force",
+        ],
+    );
+    let mut forced = Command::new(cargo_bin!("experiment"));
+    forced.args(["plan", "x", "--force"]).current_dir(long.path()).assert().success();
+    // 16^16 rays in one sample: no walk may be that long, whoever forces it
+    let endless = recursion(16, 16, 2);
+    for args in ["x", "x --force", "plan x --force"] {
+        refuses(
+            &endless,
+            args,
+            &["one sample would trace", "rays", "a walk is cut at 67108864", "lower n or depth"],
+        );
+    }
+    refuses(&recursion(1000, 1000, 2), "x --force", &["one sample would trace inf rays"]);
+    assert!(start.elapsed() < Duration::from_secs(5), "a refusal must not cost time");
+}
+
+#[test]
+fn more_samples_than_can_be_counted() {
+    refuses(&place(&[("x", GOOD)]), "x --samples 18446744073709551615", &["samples"]);
+}
