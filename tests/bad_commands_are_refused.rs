@@ -97,7 +97,7 @@ fn changes_that_cannot_be() {
     let cases: [(&str, &[&str]); 8] = [
         ("x --set seed", &["--set seed: expected path=value"]),
         ("x --set grid.scene.5=1", &["--set grid.scene.5=1: there is no element 5"]),
-        ("x --set seed.a=1", &["--set seed.a=1: `a` is not inside a table or list"]),
+        ("x --set samples.a=1", &["--set samples.a=1: `a` is not inside a table or list"]),
         ("x --set grid.scene.x=1", &["`x` is not inside a table or list"]),
         ("x --set sed=1", &["unknown field `sed`", "did you mean `seed`?"]),
         ("x --set samples=0", &["at least 1 sample is needed"]),

@@ -69,7 +69,7 @@ fn impossible_shapes_are_refused() {
         ("{ sphere = { center = [0, 0, 0], radius = nan } }", "a length is finite and positive"),
         ("{ sphere = { center = [0, inf, 0], radius = 1 } }", "coordinates are finite"),
         ("{ sphere = { center = [0, 0], radius = 1 } }", "invalid length 2, expected an array of length 3"),
-        ("{ sphere = { centre = [0, 0, 0], radius = 1 } }", "did you mean `center`?"),
+        ("{ sphere = { centre = [0, 0, 0], radius = 1 } }", "centre, available keys: center, radius, inward"),
         ("{ cube = { center = [0, 0, 0] } }", "expected one of `rectangle`, `triangle`, `disk`, `sphere`"),
         (
             "{ sphere_patch = { center = [0, 0, 0], radius = 1, axis = [0, 0, 1], low = 0.5, high = 0.5 } }",

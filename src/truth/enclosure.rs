@@ -108,6 +108,14 @@ impl<'a> Walk<'a> {
         })
     }
 
+    /// A depth from which on q depends on the patch only. Throughput below its floor grows by albedo / floor a bounce
+    /// until it is 1 again, or shrinks for ever at q = floor.
+    fn settled(&self) -> u32 {
+        let first = self.roulette.from + 2;
+        let q = |bounce| self.enclosure.patches.iter().map(move |p| self.q(bounce, p));
+        (first..first + 10_000).find(|&k| q(k).eq(q(k + 1)) && q(k).eq(q(k + 2))).unwrap_or(first + 10_000)
+    }
+
     /// Whether light scattered once more than at depth `bounce` is followed along a continued ray.
     fn continues(&self, bounce: u32) -> bool {
         self.roulette.reaches(bounce + 1 + u32::from(self.explicit))
@@ -165,7 +173,7 @@ impl<'a> Walk<'a> {
         let (mut next, start) = match self.roulette.clamp {
             Some(clamp) => (Central::constant(0.0), clamp + 1),
             None => {
-                let settled = counted.settled().max(self.roulette.from + 2);
+                let settled = counted.settled().max(self.settled());
                 (self.fixed_point(settled, channel, counted), settled)
             }
         };
@@ -182,7 +190,7 @@ impl<'a> Walk<'a> {
 
     /// Expected rays for a camera ray that meets each patch, the camera ray included; `None` if infinite.
     pub fn rays(&self) -> Option<Vec<f64>> {
-        let start = self.roulette.clamp.map_or(self.roulette.from + 2, |clamp| clamp + 1);
+        let start = self.roulette.clamp.map_or_else(|| self.settled(), |clamp| clamp + 1);
         let step = |bounce: u32, next: f64| -> Vec<f64> {
             let shadow = f64::from(u32::from(self.explicit && self.roulette.reaches(bounce + 1)));
             let continued = |p: &Patch| {
@@ -214,7 +222,7 @@ impl<'a> Walk<'a> {
         if self.roulette.clamp.is_some() || self.branches > 1 {
             return None;
         }
-        let settled = self.roulette.from + 2;
+        let settled = self.settled();
         let excess = |alpha: f64| {
             let weight = |p: &Patch| {
                 let (q, rho) = (self.q(settled, p), p.albedo[channel]);
