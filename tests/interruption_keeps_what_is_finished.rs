@@ -9,6 +9,7 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// The first cells take a moment, the last one minutes: long enough to be interrupted anywhere.
 const FILE: &str = r#"question = "What is kept?"
@@ -30,36 +31,46 @@ fn cells(csv: &Path) -> BTreeSet<String> {
     reader.records().map(|row| row.unwrap().iter().skip(1).take(4).collect::<Vec<_>>().join(" ")).collect()
 }
 
-fn interrupted_by(signal: &str) {
-    let place = tempfile::tempdir().unwrap();
-    let place = place.path();
+/// A folder with the experiment and an older, complete result of it.
+fn place() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path();
     fs::create_dir(place.join("experiments")).unwrap();
     fs::write(place.join("experiments/x.toml"), FILE).unwrap();
     fs::create_dir_all(place.join("reports/x")).unwrap();
     for file in ["cells.json", "results.csv"] {
         fs::write(place.join("reports/x").join(file), "older and complete").unwrap();
     }
+    folder
+}
 
+/// Exit status and standard error of a run that gets `signal` after its third line, when only the long cell is left.
+fn interrupted_by(signal: &str, place: &Path) -> (Option<i32>, String) {
     let mut command = Command::new(cargo_bin!("experiment"));
     command.args(["x", "--jobs", "2"]).current_dir(place).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
-    let mut first = String::new();
-    // after the third line only the long cell is left
+    let mut text = String::new();
     for _ in 0..3 {
-        stderr.read_line(&mut first).unwrap();
+        stderr.read_line(&mut text).unwrap();
     }
-    assert!(first.starts_with("[1/4] furnace implicit constant q=0.5:"), "{first}");
     let sent = Instant::now();
     assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
-    let mut rest = String::new();
-    stderr.read_to_string(&mut rest).unwrap();
+    stderr.read_to_string(&mut text).unwrap();
     let output = child.wait_with_output().unwrap();
-
-    assert_eq!(output.status.code(), Some(130), "{signal}: {rest}");
     assert!(sent.elapsed() < Duration::from_secs(5), "{signal} took {:?}", sent.elapsed());
+    (output.status.code(), text)
+}
+
+fn keeps_what_is_finished(signal: &str) {
+    let folder = place();
+    let place = folder.path();
+    let (status, stderr) = interrupted_by(signal, place);
+    assert_eq!(status, Some(130), "{signal}: {stderr}");
+    assert!(stderr.starts_with("[1/4] furnace implicit constant q=0.5:"), "{stderr}");
     let message = "interrupted: 3 of 4 cells are finished and kept in reports/x-interrupted";
-    assert!(rest.contains(message), "{rest}");
+    assert!(stderr.contains(message), "{stderr}");
+
     let kept = place.join("reports/x-interrupted");
     let finished =
         ["furnace implicit constant 0.5", "furnace implicit constant 0.6", "furnace implicit albedo "];
@@ -77,10 +88,21 @@ fn interrupted_by(signal: &str) {
 
 #[test]
 fn ctrl_c_keeps_what_is_finished() {
-    interrupted_by("-INT");
+    keeps_what_is_finished("-INT");
 }
 
 #[test]
 fn a_polite_kill_keeps_what_is_finished() {
-    interrupted_by("-TERM");
+    keeps_what_is_finished("-TERM");
+}
+
+#[test]
+#[ignore = "known fault: Store::publish replaces a folder NAME-interrupted whatever it holds"]
+fn a_folder_of_other_files_is_not_replaced() {
+    let place = place();
+    let other = place.path().join("reports/x-interrupted");
+    fs::create_dir(&other).unwrap();
+    fs::write(other.join("thesis.tex"), "three years of work").unwrap();
+    interrupted_by("-INT", place.path());
+    assert_eq!(fs::read(other.join("thesis.tex")).unwrap(), b"three years of work");
 }

@@ -16,13 +16,10 @@ use crate::truth::{ClosedForm, Counted, Known, Reference};
 /// error probabilities used here [Cochran 1977, sec. 2.15].
 pub const MIN_EFFECTIVE: f64 = 400.0;
 
-/// A question about a row, asked under a claim.
+/// A question about a row, asked under a claim; both by their index.
 pub(super) struct Asked {
-    /// Index of the claim in the file.
     pub claim: usize,
-    /// Index of the row.
     pub row: usize,
-    /// The question.
     pub question: Question,
 }
 
@@ -296,10 +293,11 @@ impl Subject<'_> {
             let expected = self.plan.is_unbiased().then_some(stored.mean[channel]);
             row.against(stored.mean[channel], stored.std_error[channel], expected, "independent renderer");
             sheet.state(row);
+            let scale = stored.mean[channel].max(image[channel]);
             if let (Some((claim, margin)), Some(_)) = (claim, expected) {
                 let question = self.against_stored(&self.cell.blocks[channel], &stored, channel);
                 let (mean, std_error) = (measured.mean, measured.std_error);
-                sheet.ask(claim, Question { mean, std_error, margin: margin * image[channel], ..question });
+                sheet.ask(claim, Question { mean, std_error, margin: margin * scale, ..question });
             }
         }
     }

@@ -165,7 +165,10 @@ pub fn theory(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, parameter:
     let highest = curve.cells.iter().map(|&c| value(lookup, c, "q")).fold(0.0, f64::max);
     let steps = 240;
     let q = |i: u32| lowest + (highest - lowest) * f64::from(i) / f64::from(steps);
-    (0..=steps).filter_map(|i| at(q(i), first, &with_q(&first.estimator, q(i)))).collect()
+    // a curve that runs to infinity would leave no room for the rest
+    let infinite = optimum_of(lookup, curve).map_or(0.0, |(_, optimum)| optimum.infinite_up_to);
+    let finite = |&i: &u32| quantity == Quantity::Cost || q(i) > infinite + 0.004 || infinite == 0.0;
+    (0..=steps).filter(finite).filter_map(|i| at(q(i), first, &with_q(&first.estimator, q(i)))).collect()
 }
 
 /// The same estimator with another constant q.

@@ -75,7 +75,7 @@ fn over(
 ) -> Named {
     let curves = curves::of(lookup, cells, parameter, series);
     let first = &lookup.plan.cells[cells[0]];
-    let subject = subject(first, series);
+    let subject = subject(lookup, first, parameter, series);
     let mut panels = Vec::new();
     for &quantity in show {
         let x = match parameter {
@@ -92,7 +92,7 @@ fn over(
     let columns = panels.len().min(3);
     let shown = show.iter().map(|&q| title(q).to_lowercase()).collect::<Vec<_>>().join(", ");
     Named {
-        name: file_name(&[&subject, parameter]),
+        name: file_name(&[&subject, &shown, "over", parameter, "by", series]),
         figure: Figure {
             title: format!("{subject}: {shown} over {parameter}"),
             alt: format!("Measured {shown} with 99.9 % intervals over {parameter}; dashed: closed form."),
@@ -102,11 +102,17 @@ fn over(
     }
 }
 
-/// What all cells of a figure share.
-fn subject(cell: &CellPlan, series: &str) -> String {
+/// What all cells of a figure share: scene, estimator, rule and the swept parameters that the figure does not show.
+fn subject(lookup: &Lookup<'_>, cell: &CellPlan, parameter: &str, series: &str) -> String {
     let estimator = if series == "estimator" { "" } else { cell.estimator_label.as_str() };
-    let parts = [cell.scene_label.as_str(), estimator, cell.roulette_label.as_str()];
-    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    let mut parts = vec![cell.scene_label.clone(), estimator.to_owned(), cell.roulette_label.clone()];
+    for (name, value) in &cell.params {
+        if lookup.plan.swept.contains(name) && name != parameter && name != series {
+            parts.push(format!("{name} = {value}"));
+        }
+    }
+    parts.retain(|part| !part.is_empty());
+    parts.join(", ")
 }
 
 /// Adds one curve's measured points, theory and marks to a panel.

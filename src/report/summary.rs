@@ -33,7 +33,7 @@ pub struct Line {
 pub fn line(lookup: &Lookup<'_>, cell: usize) -> Line {
     let plan = &lookup.plan.cells[cell];
     let means: Vec<&Row> = (0..3).filter_map(|c| lookup.row(cell, Estimand::Mean, Some(c))).collect();
-    let grey = means.windows(2).all(|pair| pair[0].mean == pair[1].mean);
+    let grey = means.windows(2).all(|pair| pair[0].mean == pair[1].mean && pair[0].truth == pair[1].truth);
     let shown = if grey { &means[..1] } else { &means[..] };
     let percent = |row: &&Row| match (row.bias, row.truth) {
         (Some(bias), Some(truth)) if truth != 0.0 => format!("{:+.3}", 100.0 * bias / truth),

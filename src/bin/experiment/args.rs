@@ -69,8 +69,9 @@ pub struct Options {
     #[arg(long, value_name = "N", global = true)]
     pub seed: Option<u64>,
     /// Threads; 0 = one for each core. Results do not depend on it
-    #[arg(short, long, value_name = "N", default_value_t = 0, global = true)]
-    pub jobs: usize,
+    #[arg(short, long, value_name = "N", default_value_t = 0, global = true,
+        value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub jobs: u16,
     /// A hundredth of the samples: shows that all works, decides little
     #[arg(long, global = true)]
     pub quick: bool,

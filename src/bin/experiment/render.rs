@@ -53,10 +53,8 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         eprintln!("interrupted: nothing was written");
         return Ok(INTERRUPTED);
     };
-    let failed = |e: &dyn std::fmt::Display| {
-        Error::io("cannot write", &args.output, std::io::Error::other(e.to_string()))
-    };
-    images::write_exr(&args.output, &cell.pixels, &plan.scene).map_err(|e| failed(&e))?;
+    images::write_exr(&args.output, &cell.pixels, &plan.scene)
+        .map_err(|e| Error::io("cannot write", &args.output, std::io::Error::other(e.to_string())))?;
     let preview = args.output.with_extension("png");
     let png = images::png(&cell.pixels, images::exposure(&cell.pixels));
     std::fs::write(&preview, png).map_err(|e| Error::io("cannot write", &preview, e))?;

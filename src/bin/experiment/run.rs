@@ -30,7 +30,7 @@ pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8,
 
 /// A pool of `--jobs` threads.
 pub fn pool(options: &Options) -> Result<rayon::ThreadPool, Error> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.jobs.into()).build();
     pool.map_err(|e| Error::Refused(format!("cannot start {} threads: {e}", options.jobs)))
 }
 

@@ -9,7 +9,8 @@ use serde::Deserialize;
 pub enum Claim {
     /// The mean, total and per bounce, is what theory or a reference says (for a clamped cell: theory's biased mean).
     Unbiased(Limits),
-    /// The means of the image's tiles are those of the reference; the margin is relative to the image's mean.
+    /// The means of the image's tiles are those of the reference; the margin is relative to the
+    /// larger of the tile's and the image's mean.
     Tiles(Limits),
     /// The sample variance is theory's.
     Variance(Limits),
