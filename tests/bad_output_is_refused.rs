@@ -114,7 +114,6 @@ fn stored_cells_that_are_damaged() {
 }
 
 #[test]
-#[ignore = "known fault: verdict::rows indexes lists that store::load did not check"]
 fn stored_cells_that_lack_what_is_reported() {
     let place = place_with_result();
     let cells = place.path().join("reports/x/cells.json");

@@ -105,7 +105,6 @@ fn impossible_shapes_are_refused() {
 }
 
 #[test]
-#[ignore = "known fault: src/scene/geometry.rs reads these numbers without a check"]
 fn shapes_that_are_nowhere_are_refused() {
     let cases = [
         ("{ rectangle = { center = [nan, 0, 0], half_u = [1, 0, 0], half_v = [0, 1, 0] } }", "finite"),

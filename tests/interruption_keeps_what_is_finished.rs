@@ -97,7 +97,6 @@ fn a_polite_kill_keeps_what_is_finished() {
 }
 
 #[test]
-#[ignore = "known fault: Store::publish replaces a folder NAME-interrupted whatever it holds"]
 fn a_folder_of_other_files_is_not_replaced() {
     let place = place();
     let other = place.path().join("reports/x-interrupted");

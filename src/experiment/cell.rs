@@ -176,6 +176,11 @@ impl Cell {
         }
     }
 
+    /// Whether all lists have their length; a store may have been damaged.
+    pub fn is_whole(&self) -> bool {
+        self.bounces.len() == BINS && [0, (TILES * TILES) as usize].contains(&self.tiles.len())
+    }
+
     /// Why nothing can be concluded from this cell, if so.
     pub fn invalid(&self) -> Option<String> {
         let complaint = |count: u64, what: &str| (count > 0).then(|| format!("{count} {what}"));

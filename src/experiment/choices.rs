@@ -137,6 +137,13 @@ fn shape(spec: &ShapeSpec) -> Result<Shape, String> {
             Shape::Sphere(SpherePatch { center, radius, axis, low, high, inward })
         }
     };
+    let radius = if let Shape::Disk(d) = &shape { d.radius } else { 1.0 };
+    if !(radius > 0.0 && radius.is_finite()) {
+        return Err(format!("{radius} is out of range: a radius is finite and positive"));
+    }
+    if !shape.origin().is_finite() {
+        return Err("coordinates are finite".to_owned());
+    }
     let area = shape.area();
     if !(area.is_finite() && area > 0.0) {
         return Err(format!("this shape has an area of {area}; it must be finite and positive"));

@@ -198,10 +198,25 @@ pub fn length<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     Ok(v)
 }
 
+/// More realizations than this are a slip of the finger.
+pub const MOST_SAMPLES: i64 = 1_000_000_000_000_000;
+
+/// A number of bounces: 0 to 1000.
+pub fn bounces<'de, D: Deserializer<'de>>(d: D) -> Result<u32, D::Error> {
+    let v = i64::deserialize(d)?;
+    check((0..=1000).contains(&v), v, "a number of bounces lies in 0 to 1000")?;
+    Ok(v as u32)
+}
+
+/// As [`bounces`], where the key may be absent.
+pub fn optional_bounces<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u32>, D::Error> {
+    bounces(d).map(Some)
+}
+
 /// A number of samples: at least 1.
 pub fn samples<'de, D: Deserializer<'de>>(d: D) -> Result<u64, D::Error> {
     let v = i64::deserialize(d)?;
-    check(v >= 1, v, "at least 1 sample is needed")?;
+    check((1..=MOST_SAMPLES).contains(&v), v, "at least 1 sample is needed, and at most 10^15")?;
     Ok(v as u64)
 }
 

@@ -15,8 +15,12 @@ pub struct Stored {
     pub version: String,
     /// The experiment file's text.
     pub spec: String,
+    /// The seed of the run.
+    pub seed: u64,
     /// Labels of the cells, in the plan's order.
     pub labels: Vec<String>,
+    /// Realizations of each cell.
+    pub samples: Vec<u64>,
     /// The cells; `None` where the run was interrupted.
     pub cells: Vec<Option<Cell>>,
     /// Wall-clock seconds of each cell.
@@ -69,7 +73,7 @@ impl Store {
 
     /// Puts the complete files in the place of older ones; `name` replaces the folder's own name, if given.
     pub fn publish(self, name: Option<&str>) -> Result<PathBuf, Error> {
-        let folder = name.map_or(self.folder.clone(), |name| self.folder.with_file_name(name));
+        let folder = name.map_or(self.folder.clone(), |name| free(&self.folder, name));
         let staged = self.staging.keep();
         readable(&staged).map_err(|e| Error::io("cannot set permissions of", &staged, e))?;
         let old = staged.with_extension("old");
@@ -84,12 +88,16 @@ impl Store {
     }
 }
 
-/// The cells stored in `folder`, if they belong to `plan`.
-pub fn load(folder: &Path, plan: &Plan) -> Result<Stored, Error> {
+/// The cells stored in `folder`, if they belong to `plan`, which learns the seed and samples of their run.
+pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
     let path = folder.join(MARK);
     let text = fs::read_to_string(&path).map_err(|e| Error::io("cannot read", &path, e))?;
     let stored: Stored = serde_json::from_str(&text)
         .map_err(|e| Error::Refused(format!("{} is damaged: {e}", path.display())))?;
+    let whole = stored.cells.iter().flatten().all(Cell::is_whole);
+    if !whole || stored.samples.len() != stored.cells.len() {
+        return Err(Error::Refused(format!("{} is damaged: lists are too short", path.display())));
+    }
     let labels: Vec<String> = plan.cells.iter().map(|cell| plan.label(cell)).collect();
     if stored.labels != labels || stored.cells.len() != labels.len() {
         return Err(Error::Refused(format!(
@@ -98,7 +106,16 @@ pub fn load(folder: &Path, plan: &Plan) -> Result<Stored, Error> {
             plan.name
         )));
     }
+    plan.spec.seed = stored.seed;
+    plan.cells.iter_mut().zip(&stored.samples).for_each(|(cell, &samples)| cell.samples = samples);
     Ok(stored)
+}
+
+/// The folder `name` beside `folder`, or `name-2` and so on where that one holds something that is not ours.
+fn free(folder: &Path, name: &str) -> PathBuf {
+    let numbered = (2..).map(|i| folder.with_file_name(format!("{name}-{i}")));
+    let mut candidates = std::iter::once(folder.with_file_name(name)).chain(numbered);
+    candidates.find(|f| !f.exists() || f.join(MARK).exists()).expect("numbers do not end")
 }
 
 fn is_empty(folder: &Path) -> bool {

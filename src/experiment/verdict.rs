@@ -112,8 +112,10 @@ impl Subject<'_> {
                 self.bounce(channel, bin, sheet);
             }
         }
-        let paths = self.cell.cost.n as f64;
-        sheet.state(self.row(Estimand::Zeros, None, self.cell.zeros as f64 / paths));
+        if self.plan.pixels == 1 {
+            let share = self.cell.zeros as f64 / self.cell.cost.n as f64;
+            sheet.state(self.row(Estimand::Zeros, None, share));
+        }
     }
 
     fn total(&self, channel: usize, stored: Option<Stored>, sheet: &mut Sheet<'_>) {

@@ -126,6 +126,16 @@ impl Shape {
         }
     }
 
+    /// The centre, or the first corner.
+    pub fn origin(&self) -> DVec3 {
+        match self {
+            Shape::Rectangle(r) => r.center,
+            Shape::Triangle(t) => t.a,
+            Shape::Disk(d) => d.center,
+            Shape::Sphere(s) => s.center,
+        }
+    }
+
     /// Area of the surface (one side).
     pub fn area(&self) -> f64 {
         match self {

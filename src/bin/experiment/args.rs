@@ -76,7 +76,7 @@ pub struct Options {
     #[arg(long, global = true)]
     pub quick: bool,
     /// Realizations of every cell
-    #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000_000))]
     pub samples: Option<u64>,
     /// Only cells whose label contains TEXT
     #[arg(long, value_name = "TEXT", global = true)]

@@ -13,6 +13,8 @@ pub struct Source {
     pub name: String,
     pub file: PathBuf,
     pub text: String,
+    /// The text before the changes of `--set`.
+    unchanged: String,
     /// The folder that holds `experiments/`, or the present one.
     root: PathBuf,
 }
@@ -37,9 +39,10 @@ impl Source {
                 file.display()
             )));
         }
+        let unchanged = text.clone();
         let text = options.set.iter().try_fold(text, |text, change| set(&file, &text, change))?;
         let root = folder.and_then(|f| f.parent().map(Path::to_owned)).unwrap_or_default();
-        Ok(Source { name, file, text, root })
+        Ok(Source { name, file, text, unchanged, root })
     }
 
     /// The resolved experiment.
@@ -51,7 +54,14 @@ impl Source {
             quick: options.quick,
             force: options.force,
         };
-        Plan::new(&self.name, &self.file, &self.text, &overrides)
+        if self.text == self.unchanged {
+            return Plan::new(&self.name, &self.file, &self.text, &overrides);
+        }
+        // a mistake of the file is told by the file's own lines
+        let changed = self.file.with_extension("toml with --set");
+        Plan::new(&self.name, &changed, &self.text, &overrides).map_err(|error| {
+            Plan::new(&self.name, &self.file, &self.unchanged, &overrides).err().unwrap_or(error)
+        })
     }
 
     /// Where its results go.

@@ -13,6 +13,10 @@ use std::sync::atomic::AtomicBool;
 
 /// Renders `args.scene` and writes an EXR with a PNG beside it.
 pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    if args.output.extension().is_none_or(|extension| extension != "exr") {
+        let output = args.output.display();
+        return Err(Error::Refused(format!("{output} must end in .exr; a PNG preview goes beside it")));
+    }
     let resolution = args.resolution;
     let scene = match args.scene.as_str() {
         "cornell_box" | "cornell" => SceneKind::CornellBox { resolution },

@@ -47,6 +47,8 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
     store.write_cells(&Stored {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         spec: source.text.clone(),
+        seed: plan.spec.seed,
+        samples: plan.cells.iter().map(|cell| cell.samples).collect(),
         labels: plan.cells.iter().map(|cell| plan.label(cell)).collect(),
         cells,
         seconds,
@@ -135,9 +137,9 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
     let mut worst = HELD;
     for name in names {
         let source = Source::read(name, options)?;
-        let plan = source.plan(options)?;
+        let mut plan = source.plan(options)?;
         let folder = source.report_folder(options);
-        let stored = store::load(&folder, &plan)?;
+        let stored = store::load(&folder, &mut plan)?;
         let rows = verdict::rows(&plan, &stored.cells);
         let store = Store::open(&folder)?;
         for file in ["timing.csv", "run.json"] {

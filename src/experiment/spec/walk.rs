@@ -55,19 +55,19 @@ pub enum RouletteSpec {
         #[serde(deserialize_with = "input::survival")]
         q: Sweep,
         /// The first so many bounces are certain.
-        #[serde(default)]
+        #[serde(default, deserialize_with = "input::bounces")]
         from: u32,
         /// The largest number of bounces.
-        #[serde(default)]
+        #[serde(default, deserialize_with = "input::optional_bounces")]
         clamp: Option<u32>,
     },
     /// q = largest channel of the albedo.
     Albedo {
         /// The first so many bounces are certain.
-        #[serde(default)]
+        #[serde(default, deserialize_with = "input::bounces")]
         from: u32,
         /// The largest number of bounces.
-        #[serde(default)]
+        #[serde(default, deserialize_with = "input::optional_bounces")]
         clamp: Option<u32>,
     },
     /// q = largest channel of the throughput.
@@ -76,10 +76,10 @@ pub enum RouletteSpec {
         #[serde(default = "small", deserialize_with = "input::probability")]
         floor: f64,
         /// The first so many bounces are certain.
-        #[serde(default)]
+        #[serde(default, deserialize_with = "input::bounces")]
         from: u32,
         /// The largest number of bounces.
-        #[serde(default)]
+        #[serde(default, deserialize_with = "input::optional_bounces")]
         clamp: Option<u32>,
     },
 }
