@@ -96,6 +96,9 @@ fn integrating_sphere(s: &SphereSpec, light: (&'static str, f64, bool)) -> Resul
 }
 
 fn primitives(p: &PrimitivesSpec) -> Result<SceneKind, String> {
+    if p.name.is_empty() || p.name.chars().count() > 80 {
+        return Err("a scene's name has 1 to 80 characters".to_owned());
+    }
     if p.primitives.is_empty() {
         return Err("a scene needs at least one primitive".to_owned());
     }

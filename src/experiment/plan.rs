@@ -2,7 +2,7 @@
 
 use super::error::Error;
 use super::grid;
-use super::spec::{self, Claim, Limits, Spec};
+use super::spec::{self, Claim, Limits, Plot, Spec};
 use crate::estimator::{BINS, Estimate, Estimator, MAX_RAYS, Property};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
@@ -98,6 +98,7 @@ impl Plan {
         let (cells, swept) = grid::resolve(&spec, file, source)?;
         let mut plan = Plan { name: name.to_owned(), spec, cells, swept };
         plan.distinct()?;
+        plan.about_something()?;
         if let Some(text) = &overrides.filter {
             let swept = &plan.swept;
             plan.cells.retain(|cell| label(cell, swept).contains(text.as_str()));
@@ -130,6 +131,51 @@ impl Plan {
                     "{}: two cells are both called `{label}`; give one of the scenes another `name`",
                     self.name
                 )));
+            }
+        }
+        Ok(())
+    }
+
+    /// A claim or a plot of what is not there would hold for ever.
+    fn about_something(&self) -> Result<(), Error> {
+        let scene = |name: &String| self.cells.iter().any(|cell| cell.scene_label == *name);
+        let no_scene = |what: &str, name: &String| {
+            let mut known: Vec<&str> = self.cells.iter().map(|cell| cell.scene_label.as_str()).collect();
+            known.dedup();
+            let known = known.join(", ");
+            Err(Error::Refused(format!("{}: {what} names the scene `{name}`; there are: {known}", self.name)))
+        };
+        for claim in &self.spec.claim {
+            if let Some(name) = claim.scene().filter(|name| !scene(name)) {
+                return no_scene("a claim", name);
+            }
+            if let Claim::Agree { estimator, roulette, .. } = claim
+                && !self
+                    .cells
+                    .iter()
+                    .any(|c| c.estimator_label == *estimator && c.roulette_label == *roulette)
+            {
+                let wanted = format!("`{estimator}` with `{roulette}`");
+                let known =
+                    self.cells.iter().map(|c| format!("`{}` with `{}`", c.estimator_label, c.roulette_label));
+                let known: std::collections::BTreeSet<String> = known.collect();
+                let known = known.into_iter().collect::<Vec<_>>().join(", ");
+                return Err(Error::Refused(format!(
+                    "{}: agree names {wanted}; there are: {known}",
+                    self.name
+                )));
+            }
+        }
+        for plot in &self.spec.plot {
+            match plot {
+                Plot::Bars { scene: name } if !scene(name) => return no_scene("a plot", name),
+                Plot::Over { parameter, .. } if !self.swept.contains(parameter) => {
+                    let known = self.swept.join(", ");
+                    let why =
+                        format!("a plot goes over `{parameter}`, which is not swept; swept are: {known}");
+                    return Err(Error::Refused(format!("{}: {why}", self.name)));
+                }
+                _ => {}
             }
         }
         Ok(())

@@ -7,7 +7,7 @@ use super::plan::{CellPlan, Plan};
 use super::row::{Estimand, Row};
 use super::spec::{Claim, Limits};
 use crate::estimator::{BINS, Rule};
-use crate::stats::{Moments, Question, judge};
+use crate::stats::{Moments, Question, Verdict, judge};
 use crate::truth::reference::{self, Stored};
 use crate::truth::{ClosedForm, Counted, Known, Reference};
 
@@ -143,8 +143,11 @@ impl Subject<'_> {
             row.against(truth, 0.0, Some(expected), "closed form");
             let mut question = Question::about(blocks, self.cell.invalid(), expected, truth.abs());
             question.noise_free = known == Known::Value(0.0);
-            let legal = known != Known::Infinite && self.enough(&mut row, channel, closed);
-            legal.then_some(question)
+            let enough = self.enough(&mut row, channel, closed);
+            if !enough && sheet.claim(Claim::unbiased).is_some() {
+                row.verdict = Some(Verdict::Inconclusive);
+            }
+            (enough && known != Known::Infinite).then_some(question)
         } else if let Some(stored) = stored {
             let expected = self.plan.is_unbiased().then_some(stored.mean[channel]);
             row.against(stored.mean[channel], stored.std_error[channel], expected, "independent renderer");
@@ -163,7 +166,7 @@ impl Subject<'_> {
         let Some(skewness) = closed.skewness(channel, Counted::All) else { return true };
         let needed = 25.0 * skewness * skewness;
         if (self.cell.cost.n as f64) < needed {
-            row.note = format!("skewness {skewness:.0}: a t interval needs {needed:.0} samples; not judged");
+            row.note = format!("skewness {skewness:.0}: a t interval needs {needed:.0} samples");
             return false;
         }
         true

@@ -142,6 +142,9 @@ fn claims(lookup: &Lookup<'_>) -> String {
     let rows: Vec<&Row> = (0..plan.cells.len()).flat_map(|c| lookup.cell(c).iter().copied()).collect();
     let count = |verdict| rows.iter().filter(|r| r.verdict == Some(verdict)).count();
     let judged = rows.iter().filter(|r| r.verdict.is_some()).count();
+    if judged == 0 {
+        return "Nothing was judged.".to_owned();
+    }
     let alpha: f64 = plan.spec.claim.iter().map(Claim::alpha).sum();
     format!(
         "Of {judged} questions {} passed, {} failed, {} stayed inconclusive and {} were invalid; were all well, \

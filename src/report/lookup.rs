@@ -28,9 +28,12 @@ impl<'a> Lookup<'a> {
         self.cell(cell).iter().find(|r| r.estimand == estimand && r.channel == channel).copied()
     }
 
-    /// The worst verdict of a cell; `None` if nothing about it was judged.
+    /// The worst verdict of a cell; `None` if its mean was not judged: that some bounces pass is not enough.
     pub fn verdict(&self, cell: usize) -> Option<Verdict> {
-        self.cell(cell).iter().filter_map(|row| row.verdict).max()
+        let about_mean = |row: &&&Row| matches!(row.estimand, Estimand::Mean | Estimand::Agree);
+        let mean = self.cell(cell).iter().filter(about_mean).filter_map(|row| row.verdict).max();
+        let worst = self.cell(cell).iter().filter_map(|row| row.verdict).max();
+        worst.filter(|&worst| mean.is_some() || worst != Verdict::Pass)
     }
 
     /// Whether the cell has an image.

@@ -52,8 +52,11 @@ fn with_images<'a>(plan: &'a Plan, cells: &'a [Option<Cell>]) -> impl Iterator<I
     cells.filter(|&(i, _)| plan.cells[i].pixels > 1)
 }
 
+/// A cell's file name; with its number where another cell's label differs only in what file names cannot hold.
 fn image_name(plan: &Plan, cell: usize) -> String {
-    plots::file_name(&[&plan.label(&plan.cells[cell])])
+    let name = |i: usize| plots::file_name(&[&plan.label(&plan.cells[i])]);
+    let taken = (0..plan.cells.len()).any(|other| other != cell && name(other) == name(cell));
+    if taken { format!("{}_{cell}", name(cell)) } else { name(cell) }
 }
 
 fn draw_images(plan: &Plan, cells: &[Option<Cell>], store: &Store) -> Result<Vec<Picture>, Error> {

@@ -33,14 +33,26 @@ pub fn figures(lookup: &Lookup<'_>) -> Vec<Named> {
             Plot::Bias {} => figures.extend(lookup.scenes().iter().filter_map(|scene| bias(lookup, scene))),
         }
     }
+    number_namesakes(&mut figures);
     figures
+}
+
+/// Labels may differ only in what file names cannot hold.
+fn number_namesakes(figures: &mut [Named]) {
+    for i in 1..figures.len() {
+        if figures[..i].iter().any(|other| other.name == figures[i].name) {
+            figures[i].name = format!("{}_{i}", figures[i].name);
+        }
+    }
 }
 
 /// A name that every file system takes.
 pub fn file_name(parts: &[&str]) -> String {
     let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let name: String = parts.join("_").chars().map(keep).collect();
-    name.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
+    let mut name = name.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_");
+    name.truncate(180);
+    name
 }
 
 fn title(quantity: Quantity) -> &'static str {

@@ -43,6 +43,14 @@ impl Claim {
         }
     }
 
+    /// The only scene it is about, if it names one.
+    pub fn scene(&self) -> Option<&String> {
+        match self {
+            Claim::Unbiased(l) | Claim::Tiles(l) | Claim::Variance(l) | Claim::Cost(l) => l.scene.as_ref(),
+            Claim::Agree { scene, .. } => scene.as_ref(),
+        }
+    }
+
     /// Its limits, if it claims the mean.
     pub fn unbiased(&self) -> Option<&Limits> {
         if let Claim::Unbiased(limits) = self { Some(limits) } else { None }
