@@ -245,7 +245,7 @@ pub fn direction<'de, D: Deserializer<'de>>(d: D) -> Result<glam::DVec3, D::Erro
     v.try_normalize().ok_or_else(|| D::Error::custom("a direction must not be the zero vector"))
 }
 
-/// A field of view [degrees].
+/// A field of view in degrees.
 pub fn field_of_view<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     let v = f64::deserialize(d)?;
     check(v > 0.0 && v < 180.0, v, "a field of view lies inside (0, 180) degrees")?;

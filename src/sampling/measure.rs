@@ -12,7 +12,7 @@ impl PdfA {
     /// The density of the direction from `x` towards a point whose density per area is `self`:
     /// p_w = p_A d² / cos θ' [Veach 1997, eq. 8.2].
     ///
-    /// `distance_squared` [m²] lies between `x` and the point; `cos_at_point` in (0, 1] is taken there.
+    /// `distance_squared` (m²) lies between `x` and the point; `cos_at_point` in (0, 1] is taken there.
     #[inline]
     pub fn per_solid_angle(self, distance_squared: f64, cos_at_point: f64) -> PdfW {
         PdfW(self.0 * distance_squared / cos_at_point)

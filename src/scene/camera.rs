@@ -51,7 +51,7 @@ pub struct Pinhole {
 }
 
 impl Pinhole {
-    /// A camera at `origin` looking along `direction`, with the full vertical field of view [degrees].
+    /// A camera at `origin` looking along `direction`, with the full vertical field of view in degrees.
     pub fn new(
         origin: DVec3,
         direction: DVec3,

@@ -226,7 +226,7 @@ pub enum SensorSpec {
         /// Which way is up.
         #[serde(deserialize_with = "input::direction")]
         up: DVec3,
-        /// Full field of view [degrees].
+        /// Full field of view in degrees.
         #[serde(deserialize_with = "input::field_of_view")]
         fov: f64,
         /// Pixels along each edge.
