@@ -62,7 +62,7 @@ pub struct Render {
 
 #[derive(Args, Clone, Default)]
 pub struct Options {
-    /// Write to DIR/<name> instead of reports/<name>
+    /// Write to DIR/NAME instead of reports/NAME
     #[arg(long, value_name = "DIR", global = true)]
     pub out: Option<PathBuf>,
     /// Another seed than the file's
