@@ -33,15 +33,21 @@ pub struct Store {
     staging: TempDir,
 }
 
-/// What marks a folder as ours.
-const MARK: &str = "cells.json";
+/// The stored cells.
+const CELLS: &str = "cells.json";
+
+/// Whether a folder holds results of an experiment: all of them, or those that a repository keeps.
+fn is_ours(folder: &Path) -> bool {
+    let has = |name: &str| folder.join(name).exists();
+    has(CELLS) || (has("results.csv") && has("index.html"))
+}
 
 impl Store {
     /// Prepares to write `folder`; fails at once, before anything is sampled, if that cannot work.
     pub fn open(folder: &Path) -> Result<Self, Error> {
         let parent = folder.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         fs::create_dir_all(parent).map_err(|e| Error::io("cannot create the output folder", parent, e))?;
-        if folder.exists() && !folder.join(MARK).exists() && !is_empty(folder) {
+        if folder.exists() && !is_ours(folder) && !is_empty(folder) {
             return Err(Error::Refused(format!(
                 "{} exists and holds no results of an experiment; it will not be overwritten, choose another --out",
                 folder.display()
@@ -68,7 +74,7 @@ impl Store {
     /// Writes the cells.
     pub fn write_cells(&self, stored: &Stored) -> Result<(), Error> {
         let text = serde_json::to_vec(stored).expect("moments have a JSON form");
-        self.write(MARK, &text)
+        self.write(CELLS, &text)
     }
 
     /// Puts the complete files in the place of older ones; `name` replaces the folder's own name, if given.
@@ -90,7 +96,7 @@ impl Store {
 
 /// The cells stored in `folder`, if they belong to `plan`, which learns the seed and samples of their run.
 pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
-    let path = folder.join(MARK);
+    let path = folder.join(CELLS);
     let text = fs::read_to_string(&path).map_err(|e| Error::io("cannot read", &path, e))?;
     let stored: Stored = serde_json::from_str(&text)
         .map_err(|e| Error::Refused(format!("{} is damaged: {e}", path.display())))?;
@@ -115,7 +121,7 @@ pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
 fn free(folder: &Path, name: &str) -> PathBuf {
     let numbered = (2..).map(|i| folder.with_file_name(format!("{name}-{i}")));
     let mut candidates = std::iter::once(folder.with_file_name(name)).chain(numbered);
-    candidates.find(|f| !f.exists() || f.join(MARK).exists()).expect("numbers do not end")
+    candidates.find(|f| !f.exists() || is_ours(f)).expect("numbers do not end")
 }
 
 fn is_empty(folder: &Path) -> bool {
