@@ -82,7 +82,7 @@ const NUMBERS: [Case; 32] = [
     ("roulette = [{ constant = { q = -1 } }]", "-1", "a finite number above 0"),
     ("roulette = [{ constant = { q = nan } }]", "nan", "a finite number above 0"),
     ("roulette = [{ constant = { q = [0.5, inf] } }]", "[0.5, inf]", "inf is out of range: q is"),
-    ("roulette = [{ constant = { q = 0.5, from = -1 } }]", "-1", "expected u32"),
+    ("roulette = [{ constant = { q = 0.5, from = -1 } }]", "-1", "0 to 1000"),
     ("roulette = [{ throughput = { floor = 0 } }]", "0", "it lies in (0, 1]"),
     ("roulette = [{ depth_clamp = { bounces = 2.5 } }]", "2.5", "a whole number from 0 to 1000"),
     ("roulette = [{ depth_clamp = { bounces = -1 } }]", "-1", "a whole number from 0 to 1000"),
