@@ -73,6 +73,15 @@ impl Estimator {
         all
     }
 
+    /// The same estimator with another termination rule.
+    pub fn with_roulette(&self, roulette: Roulette) -> Self {
+        match *self {
+            Estimator::Recursive(e) => Estimator::Recursive(Recursive { roulette, ..e }),
+            Estimator::Implicit(e) => Estimator::Implicit(Implicit { roulette, ..e }),
+            Estimator::Explicit(e) => Estimator::Explicit(Explicit { roulette, ..e }),
+        }
+    }
+
     /// When its walks end.
     pub fn roulette(&self) -> &Roulette {
         match self {

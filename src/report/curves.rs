@@ -3,7 +3,7 @@
 use super::figure::{Colour, Mark, Point, Region};
 use super::lookup::Lookup;
 use super::plots::Z_BAR;
-use crate::estimator::{BINS, Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use crate::estimator::{BINS, Estimator, Roulette, Rule};
 use crate::experiment::row::CHANNELS;
 use crate::experiment::spec::Quantity;
 use crate::experiment::{CellPlan, Estimand};
@@ -173,12 +173,7 @@ pub fn theory(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, parameter:
 
 /// The same estimator with another constant q.
 fn with_q(estimator: &Estimator, q: f64) -> Estimator {
-    let roulette = Roulette { rule: Rule::Constant { q }, ..*estimator.roulette() };
-    match *estimator {
-        Estimator::Implicit(e) => Estimator::Implicit(Implicit { roulette, ..e }),
-        Estimator::Explicit(e) => Estimator::Explicit(Explicit { roulette, ..e }),
-        Estimator::Recursive(e) => Estimator::Recursive(Recursive { roulette, ..e }),
-    }
+    estimator.with_roulette(Roulette { rule: Rule::Constant { q }, ..*estimator.roulette() })
 }
 
 fn predicted(closed: &ClosedForm, quantity: Quantity, channel: usize, last: Option<u32>) -> Option<f64> {

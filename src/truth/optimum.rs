@@ -1,7 +1,7 @@
 //! The constant survival probability that is most efficient, by theory.
 
 use super::{ClosedForm, Counted, Known};
-use crate::estimator::{Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use crate::estimator::{Estimator, Roulette, Rule};
 use crate::scene::library::SceneKind;
 
 /// Efficiency over q as theory has it.
@@ -15,12 +15,7 @@ pub struct Optimum {
 
 /// The same estimator with constant q from the first bounce on, without a clamp.
 pub fn with_constant_q(estimator: &Estimator, q: f64) -> Estimator {
-    let roulette = Roulette::unclamped(Rule::Constant { q });
-    match *estimator {
-        Estimator::Implicit(e) => Estimator::Implicit(Implicit { roulette, ..e }),
-        Estimator::Explicit(e) => Estimator::Explicit(Explicit { roulette, ..e }),
-        Estimator::Recursive(e) => Estimator::Recursive(Recursive { roulette, ..e }),
-    }
+    estimator.with_roulette(Roulette::unclamped(Rule::Constant { q }))
 }
 
 /// 1 / (variance x rays) of one sample with constant q; 0 where the variance is infinite, `None` where unknown.
