@@ -2,7 +2,7 @@
 //! that the compiler cannot drop the geometry of a furnace, where radiance does not depend on where a ray goes.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule};
+use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule, Technique};
 use furnace::experiment::run::block_of;
 use furnace::sampling::Address;
 use furnace::scene::library::{Patch, SceneKind, View};
@@ -24,9 +24,12 @@ fn scenes() -> Vec<(&'static str, SceneKind, u64)> {
 
 fn estimators() -> Vec<(&'static str, Estimator)> {
     let roulette = Roulette { rule: Rule::Throughput { floor: 0.05 }, from: 5, clamp: None };
-    let (lights, directions) = (LightSampling::Area, Directions::Cosine);
+    let (lights, directions) = (LightSampling::AREA, Directions::Cosine);
     vec![
-        ("explicit", Estimator::Explicit(Explicit { lights, directions, roulette })),
+        (
+            "explicit",
+            Estimator::Explicit(Explicit { technique: Technique::Light, lights, directions, roulette }),
+        ),
         ("implicit", Estimator::Implicit(Implicit { directions, roulette })),
     ]
 }

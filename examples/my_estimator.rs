@@ -19,12 +19,12 @@ impl Estimate for MyPathTracer {
         let mut beta = Rgb::ONE;
         for bounce in 0.. {
             let Some(x) = cx.hit(&ray) else { return };
-            cx.add(bounce, beta * x.material.le);
+            cx.add(bounce, beta * x.le);
             if cx.u1() >= self.q {
                 return;
             }
-            let (next, weight) = cx.scatter(&x, Directions::Cosine);
-            (ray, beta) = (next, beta * weight * self.weight);
+            let next = cx.scatter(&x, Directions::Cosine);
+            (ray, beta) = (next.ray, beta * next.weight * self.weight);
         }
     }
 

@@ -6,13 +6,15 @@
 //! only means are compared that are known to 5 %: light that is found by chance and rarely, as late bounces are by
 //! implicit estimators, is no matter for a t test. Together 2e-11.
 
-use furnace::estimator::{Estimate, Estimator, Explicit, Implicit, Property, Recursive, Roulette, Rule};
+use furnace::estimator::{
+    Estimate, Estimator, Explicit, Implicit, Property, Recursive, Roulette, Rule, Technique,
+};
 use furnace::experiment::{Cell, sample};
 use furnace::sampling::Address;
-use furnace::scene::camera::Pinhole;
+use furnace::scene::camera::Camera;
 use furnace::scene::geometry::{Disk, Rectangle, SpherePatch, Triangle};
-use furnace::scene::library::{Primitive, SceneKind};
-use furnace::scene::{Directions, LightSampling, Rgb, Sensor, Shape};
+use furnace::scene::library::{Primitive, SceneKind, Setting};
+use furnace::scene::{Directions, LightSampling, Material, Rgb, Sensor, Shape};
 use furnace::stats::Moments;
 use furnace::truth::Reference;
 use glam::DVec3;
@@ -39,7 +41,7 @@ fn agree(what: &str, a: Mean, b: Mean) {
 }
 
 fn explicit(lights: LightSampling, directions: Directions, roulette: Roulette) -> Estimator {
-    Estimator::Explicit(Explicit { lights, directions, roulette })
+    Estimator::Explicit(Explicit { technique: Technique::Light, lights, directions, roulette })
 }
 
 /// Throughput roulette bounds throughput whatever directions are drawn, so that variances are finite.
@@ -49,8 +51,8 @@ fn unbiased() -> Vec<Estimator> {
     let mut all = Vec::new();
     for directions in [Directions::Cosine, Directions::Uniform] {
         all.push(Estimator::Implicit(Implicit { directions, roulette: THROUGHPUT }));
-        all.push(explicit(LightSampling::Area, directions, THROUGHPUT));
-        all.push(explicit(LightSampling::SolidAngle, directions, THROUGHPUT));
+        all.push(explicit(LightSampling::AREA, directions, THROUGHPUT));
+        all.push(explicit(LightSampling::SOLID_ANGLE, directions, THROUGHPUT));
     }
     all
 }
@@ -61,7 +63,7 @@ fn clamped() -> Vec<Estimator> {
         Estimator::Implicit(Implicit { directions, roulette }),
         Estimator::Recursive(Recursive { samples: 2, directions, roulette }),
         Estimator::Recursive(Recursive { samples: 3, directions, roulette }),
-        explicit(LightSampling::SolidAngle, directions, roulette),
+        explicit(LightSampling::SOLID_ANGLE, directions, roulette),
     ]
 }
 
@@ -135,7 +137,11 @@ fn in_the_empty_cornell_box() {
 /// variance is finite for area sampling too.
 fn odd_lights() -> SceneKind {
     let at = DVec3::new;
-    let one = |shape, albedo, emission| Primitive { shape, albedo, emission };
+    let one = |shape, albedo, emission| Primitive {
+        shape,
+        material: Material::lambert(albedo, emission),
+        velocity: DVec3::ZERO,
+    };
     let wall = |center, half_u, half_v| Shape::Rectangle(Rectangle { center, half_u, half_v });
     let ball = |center, radius| {
         Shape::Sphere(SpherePatch { center, radius, axis: DVec3::Z, low: -1.0, high: 1.0, inward: false })
@@ -160,8 +166,8 @@ fn odd_lights() -> SceneKind {
         one(disk(at(-0.3, 1.2, -0.7), DVec3::Z, 0.3), Rgb::splat(0.5), at(5.0, 0.3, 0.1)),
     ];
     let eye = at(1.2, 1.6, 4.5);
-    let camera = Pinhole::new(eye, at(-0.1, 1.0, 0.0) - eye, DVec3::Y, 45.0, (16, 16));
-    SceneKind::Custom { primitives, sensor: Sensor::Camera(camera) }
+    let camera = Camera::pinhole(eye, at(-0.1, 1.0, 0.0) - eye, DVec3::Y, 45.0, (16, 16));
+    SceneKind::Custom(Setting { primitives, points: Vec::new(), sky: None, sensor: Sensor::Camera(camera) })
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! nothing can hide in them: a bias of 1e-11 fails.
 
 use furnace::estimator::{
-    BINS, Ctx, Estimate, Estimator, Explicit, Implicit, Recursive, Roulette, Rule, Tally,
+    BINS, Ctx, Estimate, Estimator, Explicit, Implicit, Recursive, Roulette, Rule, Tally, Technique,
 };
 use furnace::sampling::Address;
 use furnace::scene::library::{Patch, SceneKind, View};
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// Unequal in every channel, so that a mixed-up channel shows; one channel is black.
 const ALBEDO: Rgb = Rgb::new(0.83, 0.4, 0.0);
 const EMISSION: Rgb = Rgb::new(0.7, 2.0, 5.0);
-const LIGHT_SAMPLINGS: [LightSampling; 2] = [LightSampling::Area, LightSampling::SolidAngle];
+const LIGHT_SAMPLINGS: [LightSampling; 2] = [LightSampling::AREA, LightSampling::SOLID_ANGLE];
 /// Few are enough: each must be exact by itself.
 const SAMPLES: u64 = 2_000;
 
@@ -26,7 +26,12 @@ fn implicit(roulette: Roulette) -> Estimator {
 }
 
 fn explicit(lights: LightSampling, roulette: Roulette) -> Estimator {
-    Estimator::Explicit(Explicit { lights, directions: Directions::Cosine, roulette })
+    Estimator::Explicit(Explicit {
+        technique: Technique::Light,
+        lights,
+        directions: Directions::Cosine,
+        roulette,
+    })
 }
 
 /// Calls `check` with one sample after the other.
@@ -35,8 +40,8 @@ fn each_sample(scene: &SceneKind, estimator: &Estimator, check: impl Fn(&Tally))
     for realization in 0..SAMPLES {
         let mut tally = Tally::default();
         let mut stream = Address::of(&["furnace_is_exact_per_bounce"]).stream(realization, 0);
-        let (ray, response) = scene.sensor.ray((0, 0), &mut stream);
-        estimator.estimate(ray, &mut Ctx::new(&scene, stream, &mut tally, response));
+        let start = scene.start((0, 0), &mut stream);
+        estimator.estimate(start.ray, &mut Ctx::new(&scene, stream, &mut tally, &start));
         assert_eq!((tally.non_finite, tally.negative, tally.runaway), (0, 0, 0));
         check(&tally);
     }
@@ -121,7 +126,7 @@ fn bounces_before_the_roulette_have_no_noise() {
             for (scene, estimator, certain) in [
                 (&sphere, implicit(roulette), from),
                 (&cube, implicit(roulette), from),
-                (&sphere, explicit(LightSampling::Area, roulette), from + 1),
+                (&sphere, explicit(LightSampling::AREA, roulette), from + 1),
             ] {
                 each_sample(scene, &estimator, |tally| {
                     (0..=certain).for_each(|k| close(tally.bounces[k as usize], term(k)));

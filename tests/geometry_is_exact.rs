@@ -8,10 +8,10 @@ use furnace::sampling::{Address, Stream};
 use furnace::scene::geometry::{Disk, NOWHERE, Rectangle, SpherePatch, Triangle};
 use furnace::scene::library::{Patch, SceneKind, View};
 use furnace::scene::spheres::Spheres;
-use furnace::scene::{Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
+use furnace::scene::{Bsdf, Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
 use glam::DVec3;
 
-const GREY: Material = Material { albedo: Rgb::splat(0.5), le: Rgb::ZERO };
+const GREY: Material = Material { bsdf: Bsdf::Lambert { albedo: Rgb::splat(0.5) }, le: Rgb::ZERO };
 /// Builds a scene, its lengths times the argument.
 type Build = fn(f64) -> Scene;
 const SCENES: [(&str, Build); 2] = [("mixed", mixed), ("cornell", cornell)];
@@ -88,7 +88,7 @@ fn nearest(scene: &Scene, ray: &Ray) -> (f64, u32) {
 fn leave(scene: &Scene, id: usize, stream: &mut Stream) -> Ray {
     let surface = &scene.surfaces()[id];
     let (p, frame) = surface.sample_area(stream.u2());
-    let d = Directions::Uniform.sample(&GREY, &frame, stream.u2()).wi;
+    let d = GREY.bsdf.sample(Directions::Uniform, &frame, DVec3::Z, stream.u2()).wi;
     Ray { o: p, d, from: id as u32 }
 }
 
@@ -103,7 +103,7 @@ fn rays_never_hit_the_surface_that_they_leave() {
             let (t, other) = nearest(&scene, &ray);
             let front = |p| scene.surfaces()[other as usize].at(p).1.n.dot(ray.d) < 0.0;
             let seen = t.is_finite() && front(ray.o + t * ray.d);
-            let hit = scene.intersect(&ray);
+            let hit = scene.intersect(&ray, 0.0);
             assert_eq!(hit.map(|h| h.surface), seen.then_some(other), "{name}: {ray:?} at {t}");
             // where a ray grazes a sphere, the textbook's root has half of its digits
             assert!(hit.is_none_or(|h| h.p.distance(ray.o + t * ray.d) < 1e-7), "{name}: {ray:?} at {t}");
@@ -124,11 +124,13 @@ fn closed_scenes_do_not_leak() {
         let (mut ray, _) = scene.sensor.ray((0, 0), &mut stream);
         let mut drift = 0f64;
         for bounce in 0..333_334 {
-            let Some(hit) = scene.intersect(&ray) else { panic!("{name}: bounce {bounce} leaks: {ray:?}") };
+            let Some(hit) = scene.intersect(&ray, 0.0) else {
+                panic!("{name}: bounce {bounce} leaks: {ray:?}")
+            };
             if let Shape::Sphere(s) = &scene.surfaces()[hit.surface as usize].shape {
                 drift = drift.max((hit.p.distance(s.center) / s.radius - 1.0).abs());
             }
-            ray = hit.spawn(Directions::Cosine.sample(&GREY, &hit.frame, stream.u2()).wi);
+            ray = hit.spawn(GREY.bsdf.sample(Directions::Cosine, &hit.frame, DVec3::Z, stream.u2()).wi);
         }
         assert!(drift < 1e-12, "{name}: {drift:e} off the sphere");
     }
@@ -151,7 +153,7 @@ fn bands_partition_their_sphere() {
         for ray in [Ray { from: 0, ..leaving }, inside, at_seam] {
             let met = alone.iter().filter(|band| band.nearest(&ray).0.is_finite()).count();
             assert_eq!(met, 1, "{ray:?}");
-            assert!(scene.intersect(&ray).is_some(), "{ray:?}");
+            assert!(scene.intersect(&ray, 0.0).is_some(), "{ray:?}");
         }
     }
 }
@@ -176,8 +178,8 @@ fn shadow_rays_see_what_traced_rays_see() {
             let (t, id) = nearest(&scene, &ray);
             let visible = t > distance * (1.0 - 1e-9);
             let case = format_args!("{name}: {i} -> {j}, {segment:?}, {id} at {t}");
-            assert_eq!(scene.visible(&segment, j as u32), visible, "{case}");
-            let hit = scene.intersect(&ray);
+            assert_eq!(scene.visible(&segment, 0.0, j as u32), visible, "{case}");
+            let hit = scene.intersect(&ray, 0.0);
             if visible && normal.n.dot(ray.d) < 0.0 {
                 // seen from the front, and found there
                 let hit = hit.unwrap();
@@ -205,7 +207,7 @@ fn hits_do_not_depend_on_the_unit_of_length() {
             for i in 0..100_000 {
                 let ray = leave(&scene, i % scene.surfaces().len(), &mut stream);
                 let far = Ray { o: ray.o * k, ..ray };
-                let (here, there) = (scene.intersect(&ray), other.intersect(&far));
+                let (here, there) = (scene.intersect(&ray, 0.0), other.intersect(&far, 0.0));
                 let (here, there) =
                     (here.map(|h| (h.p * k, h.frame, h.surface)), there.map(|h| (h.p, h.frame, h.surface)));
                 assert_eq!(here, there, "{name} x {k}: {ray:?}");

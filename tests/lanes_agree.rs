@@ -7,10 +7,10 @@ use furnace::sampling::{Address, Stream, warp};
 use furnace::scene::geometry::{Disk, NOWHERE, Rectangle};
 use furnace::scene::lanes::RectangleLanes;
 use furnace::scene::library::SceneKind;
-use furnace::scene::{Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
+use furnace::scene::{Bsdf, Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
 use glam::DVec3;
 
-const GREY: Material = Material { albedo: Rgb::splat(0.5), le: Rgb::ZERO };
+const GREY: Material = Material { bsdf: Bsdf::Lambert { albedo: Rgb::splat(0.5) }, le: Rgb::ZERO };
 
 fn stream(name: &str) -> Stream {
     Address::of(&["lanes_agree", name]).stream(0, 0)
@@ -74,7 +74,7 @@ fn assert_agree(scene: &Scene, lanes: &RectangleLanes, ray: &Ray) -> bool {
     let (first, id) = nearest(surfaces, ray, |_| true);
     let front = |id: u32| surfaces[id as usize].at(ray.o + first * ray.d).1.n.dot(ray.d) < 0.0;
     let expected = (first.is_finite() && front(id)).then_some(id);
-    assert_eq!(scene.intersect(ray).map(|hit| hit.surface), expected, "{ray:?}");
+    assert_eq!(scene.intersect(ray, 0.0).map(|hit| hit.surface), expected, "{ray:?}");
     t.is_finite()
 }
 
@@ -100,7 +100,7 @@ fn the_cornell_box_looks_the_same() {
     for i in 0..100_000 {
         let id = seen[i % seen.len()];
         let (p, frame) = surfaces[id].sample_area(stream.u2());
-        let d = Directions::Uniform.sample(&GREY, &frame, stream.u2()).wi;
+        let d = GREY.bsdf.sample(Directions::Uniform, &frame, DVec3::Z, stream.u2()).wi;
         hits += u32::from(assert_agree(&scene, &lanes, &Ray { o: p, d, from: id as u32 }));
         // along an axis: parallel to most planes, where distances are infinite
         let axis = DVec3::AXES[i % 3] * if i % 2 == 0 { 1.0 } else { -1.0 };

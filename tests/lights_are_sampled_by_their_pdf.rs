@@ -9,11 +9,11 @@
 use furnace::estimator::{Ctx, Tally};
 use furnace::sampling::Address;
 use furnace::scene::geometry::{Disk, NOWHERE, Rectangle, SpherePatch, Triangle};
-use furnace::scene::{LightSampling, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
+use furnace::scene::{LightSampling, Material, Ray, Rgb, Scene, Sensor, Shape, Start, Surface};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-const WAYS: [LightSampling; 2] = [LightSampling::Area, LightSampling::SolidAngle];
+const WAYS: [LightSampling; 2] = [LightSampling::AREA, LightSampling::SOLID_ANGLE];
 const SIGMAS: f64 = 7.0;
 const SAMPLES: u32 = 1 << 19;
 
@@ -26,8 +26,8 @@ fn scene(lights: &[(Shape, Rgb)], normal: DVec3) -> Scene {
     let (u, v) = normal.any_orthonormal_pair();
     let plate = Rectangle { center: DVec3::ZERO, half_u: u * 0.01, half_v: v * 0.01 };
     let mut surfaces: Vec<Surface> =
-        lights.iter().map(|&(shape, le)| Surface::new(shape, Material { albedo: Rgb::ZERO, le })).collect();
-    surfaces.push(Surface::new(Shape::Rectangle(plate), Material { albedo: Rgb::ONE, le: Rgb::ZERO }));
+        lights.iter().map(|&(shape, le)| Surface::new(shape, Material::lambert(Rgb::ZERO, le))).collect();
+    surfaces.push(Surface::new(Shape::Rectangle(plate), Material::lambert(Rgb::ONE, Rgb::ZERO)));
     Scene::new(surfaces, Sensor::Probe { origin: normal, direction: -normal })
 }
 
@@ -88,13 +88,14 @@ fn sphere_factor(h: f64, cos: f64) -> f64 {
 /// Mean and standard error of the radiance that the plate reflects: its irradiance divided by π.
 fn direct(scene: &Scene, how: LightSampling, name: &str) -> (Rgb, Rgb) {
     let Sensor::Probe { origin, direction } = scene.sensor else { unreachable!() };
-    let plate = scene.intersect(&Ray { o: origin * 0.05, d: direction, from: NOWHERE }).unwrap();
+    let plate = scene.intersect(&Ray { o: origin * 0.05, d: direction, from: NOWHERE }, 0.0).unwrap();
     let mut tally = Tally::default();
     let stream = Address::of(&["lights", name, &format!("{how:?}")]).stream(0, 0);
-    let mut cx = Ctx::new(scene, stream, &mut tally, 1.0);
+    let start = Start { ray: Ray { o: origin, d: direction, from: NOWHERE }, response: 1.0, time: 0.0 };
+    let mut cx = Ctx::new(scene, stream, &mut tally, &start);
     let (mut sum, mut squares) = (Rgb::ZERO, Rgb::ZERO);
     for _ in 0..SAMPLES {
-        let radiance = cx.direct(&plate, how);
+        let radiance = cx.direct(&plate, how).map_or(Rgb::ZERO, |light| light.radiance);
         (sum, squares) = (sum + radiance, squares + radiance * radiance);
     }
     let (n, mean) = (f64::from(SAMPLES), sum / f64::from(SAMPLES));
@@ -153,7 +154,7 @@ fn unequal_emitters_add_up_and_are_picked_by_their_power() {
     let (scene, mut picked) = (scene(&lights, DVec3::Z), [0u32; 3]);
     for i in 0..PICKS {
         let u = (f64::from(i) + 0.5) / f64::from(PICKS);
-        let sample = scene.sample_light(LightSampling::SolidAngle, DVec3::ZERO, u, (0.3, 0.6));
+        let sample = scene.sample_light(LightSampling::SOLID_ANGLE, (DVec3::ZERO, 0.0), u, (0.3, 0.6));
         picked[sample.unwrap().surface as usize] += 1;
     }
     for (picked, power_of_one) in picked.into_iter().zip(power) {
@@ -187,10 +188,10 @@ fn the_mean_of_one_over_pdf_is_the_solid_angle() {
         let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(CELLS);
         let mut sum = 0.0;
         for v in (0..CELLS).flat_map(|i| (0..CELLS).map(move |j| (cell(i), cell(j)))) {
-            let Some(sample) = scene.sample_light(how, DVec3::ZERO, 0.5, v) else { continue };
+            let Some(sample) = scene.sample_light(how, (DVec3::ZERO, 0.0), 0.5, v) else { continue };
             let ratio = sample.to_light.length() / sample.distance;
             assert!((ratio - 1.0).abs() < 1e-15 && sample.le == Rgb::ONE);
-            sum += 1.0 / sample.pdf.0;
+            sum += 1.0 / sample.pdf.unwrap().0;
         }
         let mean = sum / f64::from(CELLS * CELLS);
         assert!((mean / exact - 1.0).abs() < 1e-5, "{how:?} {shape:?}: {mean} {exact}");
@@ -204,7 +205,7 @@ fn backs_are_dark() {
     let ball = (Shape::Sphere(sphere(DVec3::Z * 3.0, 0.5)), at(0.1, 0.2, 3.1));
     for (shape, eye) in flat.map(|shape| (shape, at(1.1, -0.3, 4.0))).into_iter().chain([ball]) {
         let scene = scene(&[(shape, Rgb::ONE)], DVec3::Z);
-        let dark = |how| scene.sample_light(how, eye, 0.5, (0.4, 0.7)).is_none();
+        let dark = |how| scene.sample_light(how, (eye, 0.0), 0.5, (0.4, 0.7)).is_none();
         assert!(WAYS.into_iter().all(dark), "{shape:?}");
     }
 }

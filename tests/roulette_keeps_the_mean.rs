@@ -147,8 +147,9 @@ fn copies_are_q_on_average() {
     let scene = SceneKind::CornellEmpty { resolution: 1 }.build();
     for q in [0.0_f64, 0.1, 0.5, 1.0, 1.5, 2.0, 2.7] {
         let (mut tally, mut counts) = (Tally::default(), Moments::default());
-        let stream = Address::of(&["copies", &q.to_string()]).stream(0, 0);
-        let mut cx = Ctx::new(&scene, stream, &mut tally, 1.0);
+        let mut stream = Address::of(&["copies", &q.to_string()]).stream(0, 0);
+        let start = scene.start((0, 0), &mut stream);
+        let mut cx = Ctx::new(&scene, stream, &mut tally, &start);
         for _ in 0..1 << 18 {
             let copies = f64::from(cx.copies(q));
             assert!(copies == q.floor() || copies == q.ceil());

@@ -1,8 +1,8 @@
 //! What an estimator works with: the scene, a random stream and the tally. Cost accrues here, because only here can
 //! a ray be traced.
 
-use crate::sampling::Stream;
-use crate::scene::{Directions, Hit, LightSampling, Ray, Rgb, Scene};
+use crate::sampling::{PdfW, Stream};
+use crate::scene::{Directions, Hit, LightSampling, Ray, Rgb, Scene, Start};
 use glam::DVec3;
 
 /// Bounces 0 to 7 have a bin each; the last bin holds all later ones.
@@ -38,20 +38,44 @@ pub struct Ctx<'a> {
     tally: &'a mut Tally,
     /// Factor from radiance to the sensor's quantity.
     response: f64,
+    /// The moment at which the path happens.
+    time: f64,
     /// The tally's rays at which this path is cut.
     limit: u64,
 }
 
+/// Light that reaches a vertex from a sampled point.
+#[derive(Clone, Copy, Debug)]
+pub struct Direct {
+    /// What the vertex reflects of it, f cos θ le V / pdf [W m^-2 sr^-1].
+    pub radiance: Rgb,
+    /// Unit direction towards the light.
+    pub wi: DVec3,
+    /// Density with which this direction was sampled [1/sr]; `None` for a light without extent.
+    pub pdf: Option<PdfW>,
+}
+
+/// A continued path.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Where it goes.
+    pub ray: Ray,
+    /// f cos θ / pdf.
+    pub weight: Rgb,
+    /// Density of the direction [1/sr]; `None` for a Dirac lobe.
+    pub pdf: Option<PdfW>,
+}
+
 impl<'a> Ctx<'a> {
-    /// A context for one path; `response` turns radiance into the sensor's quantity.
+    /// A context for one path.
     #[inline]
-    pub fn new(scene: &'a Scene, stream: Stream, tally: &'a mut Tally, response: f64) -> Self {
+    pub fn new(scene: &'a Scene, stream: Stream, tally: &'a mut Tally, start: &Start) -> Self {
         tally.value = Rgb::ZERO;
         let limit = tally.rays + MAX_RAYS;
-        Ctx { scene, stream, tally, response, limit }
+        Ctx { scene, stream, tally, response: start.response, time: start.time, limit }
     }
 
-    /// Traces a ray: the lit side of the nearest surface, or `None` for the void and for black backs.
+    /// Traces a ray: what it meets first, or `None` for the void and for black backs.
     #[inline]
     pub fn hit(&mut self, ray: &Ray) -> Option<Hit<'a>> {
         self.tally.rays += 1;
@@ -59,7 +83,7 @@ impl<'a> Ctx<'a> {
             self.tally.runaway += 1;
             return None;
         }
-        self.scene.intersect(ray)
+        self.scene.intersect(ray, self.time)
     }
 
     /// Records a contribution [W m^-2 sr^-1] of light that was scattered `bounce` times.
@@ -91,31 +115,41 @@ impl<'a> Ctx<'a> {
         if q == 0.0 || q == 1.0 { q as u32 } else { (q + self.stream.u1()) as u32 }
     }
 
-    /// Next-event estimation: the radiance that `x` reflects of one sampled point on an emitter,
-    /// f cos θ le V / pdf [Veach 1997, eq. 8.2], or zero where nothing arrives.
+    /// Next-event estimation: one sampled point on an emitter [Veach 1997, eq. 8.2], `None` where nothing arrives.
     #[inline]
-    pub fn direct(&mut self, x: &Hit<'_>, lights: LightSampling) -> Rgb {
+    pub fn direct(&mut self, x: &Hit<'_>, lights: LightSampling) -> Option<Direct> {
+        if x.material.bsdf.is_dirac() || x.is_sky() {
+            return None;
+        }
         let pick = if self.scene.light_count() > 1 { self.u1() } else { 0.0 };
         let point = self.u2();
-        let Some(light) = self.scene.sample_light(lights, x.p, pick, point) else { return Rgb::ZERO };
-        let cos = x.frame.n.dot(light.to_light) / light.distance;
+        let light = self.scene.sample_light(lights, (x.p, self.time), pick, point)?;
+        let wi = light.to_light / light.distance;
+        let cos = x.frame.n.dot(wi);
         if cos <= 0.0 || !self.visible(x, light.to_light, light.surface) {
-            return Rgb::ZERO;
+            return None;
         }
-        x.material.f() * light.le * (cos / light.pdf.0)
+        let f = x.material.bsdf.f(x.frame.n.dot(x.wo), cos);
+        Some(Direct { radiance: f * light.le * (cos * light.weight), wi, pdf: light.pdf })
     }
 
-    /// A continued direction at `x`: the ray, and f cos θ / pdf.
+    /// Density [1/sr] with which [`Ctx::direct`] at `ray.o` would have sampled what `ray` hit.
     #[inline]
-    pub fn scatter(&mut self, x: &Hit<'_>, directions: Directions) -> (Ray, Rgb) {
-        let s = directions.sample(x.material, &x.frame, self.u2());
-        (x.spawn(s.wi), s.weight)
+    pub fn light_pdf(&self, ray: &Ray, hit: &Hit<'_>, lights: LightSampling) -> PdfW {
+        self.scene.light_pdf(lights, ray, hit, self.time)
+    }
+
+    /// A continued direction at `x`.
+    #[inline]
+    pub fn scatter(&mut self, x: &Hit<'_>, directions: Directions) -> Step {
+        let s = x.material.bsdf.sample(directions, &x.frame, x.wo, self.u2());
+        Step { ray: x.spawn(s.wi), weight: s.weight, pdf: s.pdf }
     }
 
     /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface.
     #[inline]
     fn visible(&mut self, x: &Hit<'_>, to_light: DVec3, surface: u32) -> bool {
         self.tally.rays += 1;
-        self.scene.visible(&x.spawn(to_light), surface)
+        self.scene.visible(&x.spawn(to_light), self.time, surface)
     }
 }

@@ -33,23 +33,23 @@ impl Implicit {
     fn walk(&self, mut ray: Ray, mut beta: Rgb, mut bounce: u32, cx: &mut Ctx<'_>) {
         loop {
             let Some(x) = cx.hit(&ray) else { return };
-            cx.add(bounce, beta * x.material.le);
+            cx.add(bounce, beta * x.le);
             bounce += 1;
             if !self.roulette.reaches(bounce) {
                 return;
             }
-            let q = self.roulette.q(bounce - 1, beta, x.material.albedo);
+            let q = self.roulette.q(bounce - 1, beta, x.albedo());
             let copies = cx.copies(q);
             if copies == 0 {
                 return;
             }
             beta *= 1.0 / q;
             for _ in 1..copies {
-                let (next, weight) = cx.scatter(&x, self.directions);
-                self.walk(next, beta * weight, bounce, cx);
+                let next = cx.scatter(&x, self.directions);
+                self.walk(next.ray, beta * next.weight, bounce, cx);
             }
-            let (next, weight) = cx.scatter(&x, self.directions);
-            (ray, beta) = (next, beta * weight);
+            let next = cx.scatter(&x, self.directions);
+            (ray, beta) = (next.ray, beta * next.weight);
         }
     }
 }

@@ -3,16 +3,18 @@
 pub mod ctx;
 pub mod explicit;
 pub mod implicit;
+pub mod mis;
 pub mod recursive;
 pub mod roulette;
 
-pub use ctx::{BINS, Ctx, MAX_RAYS, Tally};
+pub use ctx::{BINS, Ctx, Direct, MAX_RAYS, Step, Tally};
 pub use explicit::Explicit;
 pub use implicit::Implicit;
+pub use mis::{Heuristic, Technique};
 pub use recursive::Recursive;
 pub use roulette::{Roulette, Rule};
 
-use crate::scene::{Directions, LightSampling, Ray};
+use crate::scene::{Directions, LightSampling, Pick, Ray};
 use serde::{Deserialize, Serialize};
 
 /// Something that estimates the radiance arriving along a ray.
@@ -61,16 +63,28 @@ pub enum Estimator {
 impl Estimator {
     /// One instance of each, with the given termination rule: what the tests run over.
     pub fn catalogue(roulette: Roulette) -> Vec<Estimator> {
-        let directions = [Directions::Cosine, Directions::Uniform];
+        let (area, solid_angle) = (LightSampling::AREA, LightSampling::SOLID_ANGLE);
         let mut all = Vec::new();
-        for directions in directions {
+        for directions in [Directions::Cosine, Directions::Uniform] {
             all.push(Estimator::Implicit(Implicit { directions, roulette }));
             all.push(Estimator::Recursive(Recursive { samples: 2, directions, roulette }));
-            for lights in [LightSampling::Area, LightSampling::SolidAngle] {
-                all.push(Estimator::Explicit(Explicit { lights, directions, roulette }));
+            for (technique, lights) in [
+                (Technique::Light, area),
+                (Technique::Light, solid_angle),
+                (Technique::Light, LightSampling { pick: Pick::Uniform, ..area }),
+                (Technique::Direction, area),
+                (Technique::Both(Heuristic::Balance), area),
+                (Technique::Both(Heuristic::Power), solid_angle),
+            ] {
+                all.push(Estimator::Explicit(Explicit { technique, lights, directions, roulette }));
             }
         }
         all
+    }
+
+    /// Whether it samples points on emitters; one that does not never finds a light without extent.
+    pub fn samples_lights(&self) -> bool {
+        matches!(self, Estimator::Explicit(e) if e.technique.samples_lights())
     }
 
     /// The same estimator with another termination rule.

@@ -33,15 +33,15 @@ impl Estimate for Recursive {
 impl Recursive {
     fn shade(&self, ray: Ray, beta: Rgb, bounce: u32, cx: &mut Ctx<'_>) {
         let Some(x) = cx.hit(&ray) else { return };
-        cx.add(bounce, beta * x.material.le);
+        cx.add(bounce, beta * x.le);
         if !self.roulette.reaches(bounce + 1) {
             return;
         }
-        let q = self.roulette.q(bounce, beta, x.material.albedo);
+        let q = self.roulette.q(bounce, beta, x.albedo());
         for _ in 0..self.samples {
             for _ in 0..cx.copies(q) {
-                let (next, weight) = cx.scatter(&x, self.directions);
-                self.shade(next, beta * weight / (q * f64::from(self.samples)), bounce + 1, cx);
+                let next = cx.scatter(&x, self.directions);
+                self.shade(next.ray, beta * next.weight / (q * f64::from(self.samples)), bounce + 1, cx);
             }
         }
     }

@@ -137,6 +137,19 @@ pub fn albedo<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
     Ok(rgb)
 }
 
+/// As [`albedo`], where the key may be absent.
+pub fn optional_albedo<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Rgb>, D::Error> {
+    albedo(d).map(Some)
+}
+
+/// A part of a refractive index: each channel finite and not negative.
+pub fn index<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
+    let rgb = PerChannel::deserialize(d)?.0;
+    let wanted = "a refractive index is finite and not negative";
+    rgb.to_array().iter().try_for_each(|&v| check(v.is_finite() && v >= 0.0, v, wanted))?;
+    Ok(rgb)
+}
+
 /// Radiance [W m^-2 sr^-1]: each channel finite and not negative.
 pub fn radiance<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
     let rgb = PerChannel::deserialize(d)?.0;
@@ -160,6 +173,11 @@ pub fn counts<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
 /// Whole numbers from 1, to sweep over.
 pub fn positive_counts<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
     swept(d, "a whole number from 1 to 1000", |v| v.fract() == 0.0 && (1.0..=1000.0).contains(&v))
+}
+
+/// Tiles of the Cornell box, to sweep over: 1 to 6.
+pub fn tiles<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
+    swept(d, "a tile has a number from 1 to 6", |v| v.fract() == 0.0 && (1.0..=6.0).contains(&v))
 }
 
 /// Fractions of an area, to sweep over: inside (0, 1).

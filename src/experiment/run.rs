@@ -67,8 +67,8 @@ pub fn block_of(
             for x in 0..width {
                 let pixel = u64::from(y) * u64::from(width) + u64::from(x);
                 let mut stream = address.stream(realization, pixel);
-                let (ray, response) = scene.sensor.ray((x, y), &mut stream);
-                estimator.estimate(ray, &mut Ctx::new(scene, stream, &mut tally, response));
+                let start = scene.start((x, y), &mut stream);
+                estimator.estimate(start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
                 block.pixel(pixel as usize, tally.value);
             }
         }

@@ -1,6 +1,6 @@
-//! Reflection: a Lambert surface, and two ways of choosing where to look next.
+//! Scattering: what a surface reflects and lets through, and how a continued direction is chosen.
 
-use super::Rgb;
+use super::{Rgb, fresnel};
 use crate::sampling::PdfW;
 use crate::sampling::warp::{
     Frame, cosine_hemisphere, cosine_hemisphere_pdf, uniform_hemisphere, uniform_hemisphere_pdf,
@@ -9,24 +9,44 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_PI;
 
-/// What the front of a surface reflects (Lambert) and emits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a surface is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// Fraction of the arriving light that is reflected, each channel in [0, 1].
-    pub albedo: Rgb,
+    /// How it scatters light.
+    pub bsdf: Bsdf,
     /// Emitted radiance [W m^-2 sr^-1], the same in all directions of the front hemisphere.
     pub le: Rgb,
 }
 
-impl Material {
-    /// The BRDF f = albedo / π [1/sr], without the cosine [Lambert 1760].
-    #[inline]
-    pub fn f(&self) -> Rgb {
-        self.albedo * FRAC_1_PI
-    }
+/// How a surface scatters light. All but clear interfaces are black from behind.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bsdf {
+    /// The same radiance in all directions [Lambert 1760].
+    Lambert {
+        /// Fraction of the arriving light that is reflected, each channel in [0, 1].
+        albedo: Rgb,
+    },
+    /// A perfect mirror with the same reflectance at all angles.
+    Mirror {
+        /// Fraction of the arriving light that is reflected, each channel in [0, 1].
+        reflectance: Rgb,
+    },
+    /// A polished metal.
+    Conductor {
+        /// Real part of the complex refractive index.
+        eta: Rgb,
+        /// Imaginary part of it.
+        k: Rgb,
+    },
+    /// A smooth interface between two clear media; seen from both sides.
+    Dielectric {
+        /// Refractive index behind the surface, relative to the one in front of it.
+        ior: f64,
+    },
 }
 
-/// The density from which continued directions are drawn.
+/// The density from which directions leaving a Lambert surface are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Directions {
@@ -40,35 +60,115 @@ pub enum Directions {
 /// A continued direction.
 #[derive(Clone, Copy, Debug)]
 pub struct DirectionSample {
-    /// Unit direction, leaving the surface on its front.
+    /// Unit direction, leaving the surface.
     pub wi: DVec3,
     /// f cos θ / pdf.
     pub weight: Rgb,
-    /// Density of `wi` [1/sr].
-    pub pdf: PdfW,
+    /// Density of `wi` [1/sr]; `None` for a Dirac lobe, where `weight` divides by the probability of the choice.
+    pub pdf: Option<PdfW>,
 }
 
-impl Directions {
-    /// Draws a direction around the normal of `frame`.
+impl Material {
+    /// A Lambert surface.
+    pub fn lambert(albedo: Rgb, le: Rgb) -> Self {
+        Material { bsdf: Bsdf::Lambert { albedo }, le }
+    }
+}
+
+impl Bsdf {
+    /// Whether its back can be seen.
     #[inline]
-    pub fn sample(self, material: &Material, frame: &Frame, u: (f64, f64)) -> DirectionSample {
-        match self {
-            Directions::Cosine => {
-                let local = cosine_hemisphere(u);
-                DirectionSample {
-                    wi: frame.to_world(local),
-                    weight: material.albedo,
-                    pdf: cosine_hemisphere_pdf(local.z),
-                }
-            }
-            Directions::Uniform => {
-                let local = uniform_hemisphere(u);
-                DirectionSample {
-                    wi: frame.to_world(local),
-                    weight: material.albedo * (2.0 * local.z),
-                    pdf: uniform_hemisphere_pdf(),
-                }
-            }
+    pub fn is_clear(&self) -> bool {
+        matches!(self, Bsdf::Dielectric { .. })
+    }
+
+    /// Whether all of its directions are Dirac lobes, which no sampled light can hit.
+    #[inline]
+    pub fn is_dirac(&self) -> bool {
+        !matches!(self, Bsdf::Lambert { .. })
+    }
+
+    /// Fraction of the light arriving from where `wo` points that goes on, by channel; `cos` = |cos θ_o|.
+    #[inline]
+    pub fn albedo(&self, cos: f64) -> Rgb {
+        match *self {
+            Bsdf::Lambert { albedo } => albedo,
+            Bsdf::Mirror { reflectance } => reflectance,
+            Bsdf::Conductor { eta, k } => fresnel::conductor(cos, eta, k),
+            Bsdf::Dielectric { .. } => Rgb::ONE,
         }
     }
+
+    /// The BSDF f [1/sr] between two directions, without the cosine; zero where only Dirac lobes scatter, and where
+    /// one of the directions does not leave the front.
+    #[inline]
+    pub fn f(&self, cos_o: f64, cos_i: f64) -> Rgb {
+        match *self {
+            Bsdf::Lambert { albedo } if cos_o > 0.0 && cos_i > 0.0 => albedo * FRAC_1_PI,
+            _ => Rgb::ZERO,
+        }
+    }
+
+    /// Density [1/sr] with which [`Bsdf::sample`] draws a direction of the given cosine; `None` for Dirac lobes.
+    #[inline]
+    pub fn pdf(&self, directions: Directions, cos_i: f64) -> Option<PdfW> {
+        match (self.is_dirac(), directions) {
+            (true, _) => None,
+            (false, _) if cos_i <= 0.0 => Some(PdfW(0.0)),
+            (false, Directions::Cosine) => Some(cosine_hemisphere_pdf(cos_i)),
+            (false, Directions::Uniform) => Some(uniform_hemisphere_pdf()),
+        }
+    }
+
+    /// Draws a direction around the normal of `frame`, for light that goes on towards `wo`.
+    #[inline]
+    pub fn sample(&self, directions: Directions, frame: &Frame, wo: DVec3, u: (f64, f64)) -> DirectionSample {
+        match *self {
+            Bsdf::Lambert { albedo } => lambert(directions, albedo, frame, u),
+            Bsdf::Mirror { reflectance } => dirac(mirrored(wo, frame.n), reflectance),
+            Bsdf::Conductor { .. } => dirac(mirrored(wo, frame.n), self.albedo(frame.n.dot(wo))),
+            Bsdf::Dielectric { ior } => dielectric(ior, frame.n, wo, u.0),
+        }
+    }
+}
+
+#[inline]
+fn lambert(directions: Directions, albedo: Rgb, frame: &Frame, u: (f64, f64)) -> DirectionSample {
+    match directions {
+        Directions::Cosine => {
+            let local = cosine_hemisphere(u);
+            let pdf = Some(cosine_hemisphere_pdf(local.z));
+            DirectionSample { wi: frame.to_world(local), weight: albedo, pdf }
+        }
+        Directions::Uniform => {
+            let local = uniform_hemisphere(u);
+            let weight = albedo * (2.0 * local.z);
+            DirectionSample { wi: frame.to_world(local), weight, pdf: Some(uniform_hemisphere_pdf()) }
+        }
+    }
+}
+
+/// Reflection or refraction, chosen with their probabilities by `u`. Refraction squeezes a beam's solid angle by
+/// (n_t / n_i)² and radiance grows by as much, so radiance seen through the interface is divided by it.
+#[inline]
+fn dielectric(ior: f64, n: DVec3, wo: DVec3, u: f64) -> DirectionSample {
+    let outside = n.dot(wo) > 0.0;
+    let (n, eta) = if outside { (n, ior) } else { (-n, 1.0 / ior) };
+    let cos = n.dot(wo);
+    let (reflectance, cos_t) = fresnel::dielectric(cos, eta);
+    if u < reflectance {
+        return dirac(mirrored(wo, n), Rgb::ONE);
+    }
+    let wi = n * (cos / eta - cos_t) - wo * (1.0 / eta);
+    dirac(wi.normalize(), Rgb::splat(1.0 / (eta * eta)))
+}
+
+#[inline]
+fn dirac(wi: DVec3, weight: Rgb) -> DirectionSample {
+    DirectionSample { wi, weight, pdf: None }
+}
+
+#[inline]
+fn mirrored(wo: DVec3, n: DVec3) -> DVec3 {
+    (n * (2.0 * n.dot(wo)) - wo).normalize()
 }

@@ -3,7 +3,7 @@
 use super::Ray;
 use super::geometry::NOWHERE;
 use crate::sampling::Stream;
-use crate::sampling::warp::{Frame, cosine_hemisphere};
+use crate::sampling::warp::{Frame, cosine_hemisphere, disk};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -29,13 +29,24 @@ pub enum Sensor {
         #[serde(default)]
         on: Option<u32>,
     },
-    /// Pixel means of the radiance through a pinhole, box filter [W m^-2 sr^-1].
-    Camera(Pinhole),
+    /// The mean radiance that arrives along parallel rays through a rectangle [W m^-2 sr^-1].
+    Parallel {
+        /// The rectangle's centre.
+        center: DVec3,
+        /// Unit direction in which it looks.
+        direction: DVec3,
+        /// Half of one edge.
+        half_u: DVec3,
+        /// Half of the other edge.
+        half_v: DVec3,
+    },
+    /// Pixel means of the radiance through a pinhole or a thin lens, box filter [W m^-2 sr^-1].
+    Camera(Camera),
 }
 
-/// A pinhole camera.
+/// A camera with a pinhole or a thin lens.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pinhole {
+pub struct Camera {
     /// Where the eye is.
     pub origin: DVec3,
     /// Unit viewing direction.
@@ -48,11 +59,24 @@ pub struct Pinhole {
     pub width: u32,
     /// Pixels from top to bottom.
     pub height: u32,
+    /// The lens; a pinhole if there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lens: Option<Lens>,
 }
 
-impl Pinhole {
-    /// A camera at `origin` looking along `direction`, with the full vertical field of view in degrees.
-    pub fn new(
+/// A thin lens, uniform over its area.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lens {
+    /// Its radius [scene units].
+    pub radius: f64,
+    /// Distance of the plane that is sharp, along the viewing direction [scene units].
+    pub focus: f64,
+}
+
+impl Camera {
+    /// A pinhole at `origin` looking along `direction`, with the full vertical field of view in degrees.
+    pub fn pinhole(
         origin: DVec3,
         direction: DVec3,
         up: DVec3,
@@ -62,19 +86,33 @@ impl Pinhole {
         let forward = direction.normalize();
         let right = forward.cross(up).normalize();
         let half = libm::tan(0.5 * fov_degrees * PI / 180.0);
-        Pinhole {
+        Camera {
             origin,
             forward,
             right: right * (half * f64::from(width) / f64::from(height)),
             up: right.cross(forward) * half,
             width,
             height,
+            lens: None,
         }
+    }
+
+    /// A ray through pixel `(x, y)`, from the top left.
+    #[inline]
+    fn ray(&self, (x, y): (u32, u32), stream: &mut Stream) -> Ray {
+        let (u, v) = stream.u2();
+        let sx = 2.0 * (f64::from(x) + u) / f64::from(self.width) - 1.0;
+        let sy = 1.0 - 2.0 * (f64::from(y) + v) / f64::from(self.height);
+        let d = self.forward + sx * self.right + sy * self.up;
+        let Some(lens) = self.lens else { return Ray { o: self.origin, d: d.normalize(), from: NOWHERE } };
+        let (a, b) = disk(stream.u2());
+        let offset = lens.radius * (a * self.right.normalize() + b * self.up.normalize());
+        Ray { o: self.origin + offset, d: (d * lens.focus - offset).normalize(), from: NOWHERE }
     }
 }
 
 impl Sensor {
-    /// Width and height in pixels; a probe has one pixel.
+    /// Width and height in pixels; only a camera has more than one.
     pub fn resolution(&self) -> (u32, u32) {
         match self {
             Sensor::Camera(c) => (c.width, c.height),
@@ -84,20 +122,19 @@ impl Sensor {
 
     /// A ray for pixel `(x, y)` (from the top left) and the factor that turns its radiance into the measured quantity.
     #[inline]
-    pub fn ray(&self, (x, y): (u32, u32), stream: &mut Stream) -> (Ray, f64) {
+    pub fn ray(&self, pixel: (u32, u32), stream: &mut Stream) -> (Ray, f64) {
         match self {
             Sensor::Probe { origin, direction } => (Ray { o: *origin, d: *direction, from: NOWHERE }, 1.0),
             Sensor::Irradiance { point, normal, on } => {
                 let d = Frame::around(*normal).to_world(cosine_hemisphere(stream.u2()));
                 (Ray { o: *point, d, from: on.unwrap_or(NOWHERE) }, PI) // cos / pdf = π
             }
-            Sensor::Camera(c) => {
+            Sensor::Parallel { center, direction, half_u, half_v } => {
                 let (u, v) = stream.u2();
-                let sx = 2.0 * (f64::from(x) + u) / f64::from(c.width) - 1.0;
-                let sy = 1.0 - 2.0 * (f64::from(y) + v) / f64::from(c.height);
-                let d = (c.forward + sx * c.right + sy * c.up).normalize();
-                (Ray { o: c.origin, d, from: NOWHERE }, 1.0)
+                let o = *center + (2.0 * u - 1.0) * *half_u + (2.0 * v - 1.0) * *half_v;
+                (Ray { o, d: *direction, from: NOWHERE }, 1.0)
             }
+            Sensor::Camera(camera) => (camera.ray(pixel, stream), 1.0),
         }
     }
 }

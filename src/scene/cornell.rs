@@ -1,7 +1,7 @@
 //! The Cornell box in explicit rectangles, read from `references/cornell.json`, the data that the independent renderer
 //! was given: the light reflects, emits downwards and hangs below the ceiling; the front is open.
 
-use super::camera::Pinhole;
+use super::camera::Camera;
 use super::geometry::Rectangle;
 use super::{Material, Rgb, Scene, Sensor, Shape, Surface};
 use glam::DVec3;
@@ -44,11 +44,11 @@ pub fn cornell(blocks: bool, resolution: u32) -> Scene {
         rectangles.extend(data.blocks);
     }
     let surface = |r: &RectangleData| {
-        let material = Material { albedo: data.materials[&r.material], le: r.emission };
+        let material = Material::lambert(data.materials[&r.material], r.emission);
         Surface::new(Shape::Rectangle(facing(r)), material)
     };
     let c = &data.camera;
-    let camera = Pinhole::new(c.origin, c.direction, c.up, c.fov_degrees, (resolution, resolution));
+    let camera = Camera::pinhole(c.origin, c.direction, c.up, c.fov_degrees, (resolution, resolution));
     Scene::new(rectangles.iter().map(surface).collect(), Sensor::Camera(camera))
 }
 

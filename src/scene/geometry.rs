@@ -136,6 +136,17 @@ impl Shape {
         }
     }
 
+    /// Lowest and highest coordinates of a box around it (not always the smallest).
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let around = |center: DVec3, reach: DVec3| (center - reach, center + reach);
+        match self {
+            Shape::Rectangle(r) => around(r.center, r.half_u.abs() + r.half_v.abs()),
+            Shape::Triangle(t) => (t.a.min(t.b).min(t.c), t.a.max(t.b).max(t.c)),
+            Shape::Disk(d) => around(d.center, DVec3::splat(d.radius)),
+            Shape::Sphere(s) => around(s.center, DVec3::splat(s.radius)),
+        }
+    }
+
     /// Area of the surface (one side).
     pub fn area(&self) -> f64 {
         match self {

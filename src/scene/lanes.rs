@@ -37,14 +37,15 @@ pub struct RectangleLanes {
 }
 
 impl RectangleLanes {
-    /// Collects the rectangles among `surfaces`.
+    /// Collects the rectangles at rest among `surfaces`.
     pub fn new(surfaces: &[Surface]) -> Self {
         let mut lanes = RectangleLanes { groups: Vec::new(), slot: vec![-1.0; surfaces.len()] };
         let mut count = 0;
         for (id, surface) in surfaces.iter().enumerate() {
-            let Shape::Rectangle(r) = &surface.shape else {
+            let Shape::Rectangle(r) = &surface.shape else { continue };
+            if surface.moves() {
                 continue;
-            };
+            }
             if count % WIDTH == 0 {
                 lanes.groups.push(Group::empty());
             }

@@ -2,8 +2,9 @@
 //! symmetry and unit sizes hide mistakes.
 
 use super::cornell::cornell;
+use super::cornell_flush::cornell_flush;
 use super::geometry::{Rectangle, SpherePatch};
-use super::{Material, Rgb, Scene, Sensor, Shape, Surface};
+use super::{Material, PointLight, Rgb, Scene, Sensor, Shape, Sky, Surface};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -48,13 +49,39 @@ pub enum SceneKind {
         /// Pixels along each edge of the image.
         resolution: u32,
     },
-    /// Written out primitive by primitive in an experiment file.
-    Custom {
-        /// The surfaces.
-        primitives: Vec<Primitive>,
-        /// What is measured.
-        sensor: Sensor,
+    /// A Cornell box in the unit cube whose light lies flush in the ceiling; measured is one of six tiles.
+    CornellFlush {
+        /// Which tile, 0 to 5.
+        tile: usize,
+        /// Whether the two blocks stand in it.
+        blocks: bool,
     },
+    /// A scene of the gallery, which has a closed form.
+    Exhibit {
+        /// Its name in the gallery.
+        name: String,
+        /// The parameter that can be swept.
+        parameter: f64,
+        /// What there is.
+        setting: Setting,
+    },
+    /// Written out primitive by primitive in an experiment file.
+    Custom(Setting),
+}
+
+/// A scene, primitive by primitive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The surfaces.
+    pub primitives: Vec<Primitive>,
+    /// Lights without extent.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<PointLight>,
+    /// Light from infinity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sky: Option<Sky>,
+    /// What is measured.
+    pub sensor: Sensor,
 }
 
 /// How a closed-form scene is looked at.
@@ -84,10 +111,11 @@ pub struct Patch {
 pub struct Primitive {
     /// Its shape; the front is where its normal points.
     pub shape: Shape,
-    /// Albedo per channel.
-    pub albedo: Rgb,
-    /// Emitted radiance [W m^-2 sr^-1].
-    pub emission: Rgb,
+    /// What it is made of.
+    pub material: Material,
+    /// Way that it goes during the exposure.
+    #[serde(default)]
+    pub velocity: DVec3,
 }
 
 const CENTER: DVec3 = DVec3::new(0.3, -0.2, 0.5);
@@ -104,7 +132,8 @@ impl SceneKind {
             }
             SceneKind::CornellBox { resolution } => cornell(true, *resolution),
             SceneKind::CornellEmpty { resolution } => cornell(false, *resolution),
-            SceneKind::Custom { primitives, sensor } => custom(primitives, *sensor),
+            SceneKind::CornellFlush { tile, blocks } => cornell_flush(*tile, *blocks),
+            SceneKind::Exhibit { setting, .. } | SceneKind::Custom(setting) => setting.build(),
         }
     }
 }
@@ -121,7 +150,7 @@ fn furnace(albedo: Rgb, emission: Rgb, view: View) -> Scene {
 
 fn furnace_box(albedo: Rgb, le: Rgb, view: View) -> Scene {
     let half = DVec3::new(0.7, 1.1, 1.9);
-    let material = Material { albedo, le };
+    let material = Material::lambert(albedo, le);
     let wall = |axis: usize, sign: f64| {
         let inward = -sign * DVec3::AXES[axis];
         let half_u = DVec3::AXES[(axis + 1) % 3] * half[(axis + 1) % 3];
@@ -147,7 +176,7 @@ fn integrating_sphere(patches: &[Patch], looks_at: usize, view: View) -> Scene {
         low = if i + 1 == patches.len() { -1.0 } else { high - 2.0 * patch.fraction };
         let (center, radius, axis) = (CENTER, RADIUS, oblique());
         let band = SpherePatch { center, radius, axis, low, high, inward: true };
-        let material = Material { albedo: patch.albedo, le: patch.emission };
+        let material = Material::lambert(patch.albedo, patch.emission);
         surfaces.push(Surface::new(Shape::Sphere(band), material));
         if i == looks_at {
             target = surfaces[i].sample_area((0.5, 0.3)).0;
@@ -164,7 +193,9 @@ fn integrating_sphere(patches: &[Patch], looks_at: usize, view: View) -> Scene {
     Scene::new(surfaces, sensor)
 }
 
-fn custom(primitives: &[Primitive], sensor: Sensor) -> Scene {
-    let surface = |p: &Primitive| Surface::new(p.shape, Material { albedo: p.albedo, le: p.emission });
-    Scene::new(primitives.iter().map(surface).collect(), sensor)
+impl Setting {
+    fn build(&self) -> Scene {
+        let surface = |p: &Primitive| Surface::moving(p.shape, p.material, p.velocity);
+        Scene::lit_by(self.primitives.iter().map(surface).collect(), &self.points, self.sky, self.sensor)
+    }
 }

@@ -1,21 +1,58 @@
-//! Emitters, picked in proportion to their power, and points on them.
+//! What emits: surfaces, points and the sky; how one of them is picked, and how a point on it is drawn.
 
-use super::{Rgb, Shape, Surface, solid_angle};
+use super::sky::{FAR, SKY, Sky};
+use super::{Hit, Ray, Rgb, Shape, Surface, geometry::NOWHERE, solid_angle};
 use crate::sampling::warp::Frame;
 use crate::sampling::{PdfA, PdfW};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// How a point on an emitter is drawn.
+/// How light is sampled: which emitter, and where on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LightSampling {
+    /// How a point on the emitter is drawn.
+    pub points: Points,
+    /// How the emitter is picked.
+    pub pick: Pick,
+}
+
+impl LightSampling {
+    /// Points uniform over area, emitters picked by power.
+    pub const AREA: Self = LightSampling { points: Points::Area, pick: Pick::Power };
+    /// Points uniform over solid angle, emitters picked by power.
+    pub const SOLID_ANGLE: Self = LightSampling { points: Points::SolidAngle, pick: Pick::Power };
+}
+
+/// How a point on an emitting surface is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum LightSampling {
+pub enum Points {
     /// Uniformly over the emitter's area.
     #[default]
     Area,
     /// Uniformly over the solid angle that it subtends: rectangles, triangles, and whole spheres seen from outside;
     /// other shapes fall back to area.
     SolidAngle,
+}
+
+/// How one of several emitters is picked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pick {
+    /// In proportion to power, all channels added.
+    #[default]
+    Power,
+    /// Each with the same probability.
+    Uniform,
+}
+
+/// A light of no extent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PointLight {
+    /// Where it is.
+    pub position: DVec3,
+    /// Radiant intensity [W sr^-1], the same in all directions.
+    pub intensity: Rgb,
 }
 
 /// A point on an emitter, seen from a receiver.
@@ -25,11 +62,13 @@ pub struct LightSample {
     pub to_light: DVec3,
     /// Distance [scene units].
     pub distance: f64,
-    /// Radiance sent towards the receiver [W m^-2 sr^-1].
+    /// Radiance sent towards the receiver [W m^-2 sr^-1]; from a point light, irradiance on a plate facing it [W m^-2].
     pub le: Rgb,
-    /// Density of the direction, the choice of the emitter included [1/sr].
-    pub pdf: PdfW,
-    /// The emitter's surface.
+    /// What `le` is to be multiplied with: 1 / density, or for a Dirac light 1 / probability of its choice.
+    pub weight: f64,
+    /// Density of the direction, the choice of the emitter included [1/sr]; `None` for a Dirac light.
+    pub pdf: Option<PdfW>,
+    /// The emitter's surface, or what stands for it.
     pub surface: u32,
 }
 
@@ -37,34 +76,49 @@ pub struct LightSample {
 #[derive(Clone, Debug)]
 pub struct Lights {
     lights: Vec<Light>,
+    sky: Option<Sky>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Emitter {
+    /// A surface, and the density of a point uniform over its area.
+    Surface(u32, PdfA),
+    Point(PointLight),
+    Sky(Sky),
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Light {
-    surface: u32,
-    /// Probability of picking this one.
+    emitter: Emitter,
+    /// Probability of picking this one in proportion to power.
     pmf: f64,
     /// Sum of the probabilities up to and including this one.
     cdf: f64,
-    /// Density of a point uniform over its area.
-    pdf: PdfA,
 }
 
 impl Lights {
-    /// Collects the emitters; a light's power is area x (sum of the channels of its emission), up to a factor π.
-    pub fn new(surfaces: &[Surface]) -> Self {
-        let power = |s: &Surface| s.shape.area() * s.material.le.element_sum();
-        let total: f64 = surfaces.iter().map(power).sum();
+    /// Collects the emitters of a scene that fits into a sphere of the given radius. A light's power, up to a factor π:
+    /// area x radiance, 4 intensity, and what the sky sends through that sphere.
+    pub fn new(surfaces: &[Surface], points: &[PointLight], sky: Option<Sky>, radius: f64) -> Self {
+        let of_surface = |(id, s): (usize, &Surface)| {
+            let area = s.shape.area();
+            (Emitter::Surface(id as u32, PdfA(1.0 / area)), area * s.material.le.element_sum())
+        };
+        let of_point = |p: &PointLight| (Emitter::Point(*p), 4.0 * p.intensity.element_sum());
+        let of_sky = |s: Sky| (Emitter::Sky(s), radius * radius * s.fluence().element_sum());
+        let emitters: Vec<(Emitter, f64)> = (surfaces.iter().enumerate().map(of_surface))
+            .chain(points.iter().map(of_point))
+            .chain(sky.map(of_sky))
+            .filter(|&(_, power)| power > 0.0)
+            .collect();
+        let total: f64 = emitters.iter().map(|(_, power)| power).sum();
         let mut cdf = 0.0;
-        let mut lights = Vec::new();
-        for (id, surface) in surfaces.iter().enumerate() {
-            let pmf = power(surface) / total;
-            if pmf > 0.0 {
-                cdf += pmf;
-                lights.push(Light { surface: id as u32, pmf, cdf, pdf: PdfA(1.0 / surface.shape.area()) });
-            }
-        }
-        Lights { lights }
+        let light = |(emitter, power): (Emitter, f64)| {
+            let pmf = power / total;
+            cdf += pmf;
+            Light { emitter, pmf, cdf }
+        };
+        Lights { lights: emitters.into_iter().map(light).collect(), sky }
     }
 
     /// How many emitters there are.
@@ -73,42 +127,107 @@ impl Lights {
         self.lights.len()
     }
 
+    /// The sky, if there is one.
+    #[inline]
+    pub fn sky(&self) -> Option<&Sky> {
+        self.sky.as_ref()
+    }
+
+    /// Whether some light comes from points, which no ray can hit.
+    pub fn has_points(&self) -> bool {
+        self.lights.iter().any(|l| matches!(l.emitter, Emitter::Point(_)))
+    }
+
+    /// One light and the probability of its choice.
+    #[inline]
+    fn pick(&self, pick: Pick, u: f64) -> Option<(&Light, f64)> {
+        // the last one catches a cdf that rounding leaves below 1
+        let last = self.lights.last()?;
+        Some(match pick {
+            Pick::Power => {
+                let light = self.lights.iter().find(|l| u < l.cdf).unwrap_or(last);
+                (light, light.pmf)
+            }
+            Pick::Uniform => {
+                let n = self.lights.len();
+                (&self.lights[((u * n as f64) as usize).min(n - 1)], 1.0 / n as f64)
+            }
+        })
+    }
+
     /// See [`super::Scene::sample_light`].
     #[inline]
     pub fn sample(
         &self,
         surfaces: &[Surface],
         how: LightSampling,
-        p: DVec3,
+        (p, time): (DVec3, f64),
         u: f64,
         v: (f64, f64),
     ) -> Option<LightSample> {
-        // the last one catches a cdf that rounding leaves below 1
-        let last = self.lights.last()?;
-        let light = self.lights.iter().find(|l| u < l.cdf).unwrap_or(last);
-        let surface = &surfaces[light.surface as usize];
-        let (point, frame, solid_angle) = match how {
-            LightSampling::SolidAngle => by_solid_angle(surface, p, v)?,
-            LightSampling::Area => by_area(surface, v),
-        };
-        let to_light = point - p;
-        let distance_squared = to_light.length_squared();
-        let distance = distance_squared.sqrt();
-        let cos = -frame.n.dot(to_light) / distance;
-        if cos <= 0.0 || distance == 0.0 {
-            return None;
+        let (light, pmf) = self.pick(how.pick, u)?;
+        match light.emitter {
+            Emitter::Surface(id, pdf) => {
+                of_surface(&surfaces[id as usize], id, pdf, pmf, how.points, (p, time), v)
+            }
+            Emitter::Point(light) => {
+                let to_light = light.position - p;
+                let squared = to_light.length_squared();
+                let sample = LightSample {
+                    to_light,
+                    distance: squared.sqrt(),
+                    le: light.intensity / squared,
+                    weight: 1.0 / pmf,
+                    pdf: None,
+                    surface: NOWHERE,
+                };
+                (squared > 0.0).then_some(sample)
+            }
+            Emitter::Sky(sky) => {
+                let wi = sky.sample(v);
+                let pdf = PdfW(pmf * sky.pdf(wi).0);
+                Some(LightSample {
+                    to_light: wi * FAR,
+                    distance: FAR,
+                    le: sky.radiance(wi),
+                    weight: 1.0 / pdf.0,
+                    pdf: Some(pdf),
+                    surface: SKY,
+                })
+            }
         }
-        let pdf = match solid_angle {
-            Some(solid_angle) => PdfW(1.0 / solid_angle),
-            None => light.pdf.per_solid_angle(distance_squared, cos),
+    }
+
+    /// Density [1/sr] with which [`Lights::sample`] at `ray.o` draws the direction towards the emitter that `ray` hit.
+    #[inline]
+    pub fn pdf(&self, surfaces: &[Surface], how: LightSampling, ray: &Ray, hit: &Hit<'_>, time: f64) -> PdfW {
+        let is_hit = |l: &&Light| match l.emitter {
+            Emitter::Surface(id, _) => id == hit.surface,
+            Emitter::Sky(_) => hit.surface == SKY,
+            Emitter::Point(_) => false,
         };
-        Some(LightSample {
-            to_light,
-            distance,
-            le: surface.material.le,
-            pdf: PdfW(light.pmf * pdf.0),
-            surface: light.surface,
-        })
+        let Some(light) = self.lights.iter().find(is_hit) else { return PdfW(0.0) };
+        let pmf = match how.pick {
+            Pick::Power => light.pmf,
+            Pick::Uniform => 1.0 / self.lights.len() as f64,
+        };
+        let direction = match light.emitter {
+            Emitter::Point(_) => PdfW(0.0),
+            Emitter::Sky(sky) => sky.pdf(ray.d),
+            Emitter::Surface(id, pdf) => {
+                let surface = &surfaces[id as usize];
+                match how.points {
+                    Points::SolidAngle => by_solid_angle(surface, (ray.o, time), (0.5, 0.5))
+                        .and_then(|(_, _, solid_angle)| solid_angle)
+                        .map(|solid_angle| PdfW(1.0 / solid_angle)),
+                    Points::Area => None,
+                }
+                .unwrap_or_else(|| {
+                    pdf.per_solid_angle((hit.p - ray.o).length_squared(), hit.frame.n.dot(hit.wo))
+                })
+            }
+        };
+        PdfW(pmf * direction.0)
     }
 }
 
@@ -116,23 +235,55 @@ impl Lights {
 type Point = (DVec3, Frame, Option<f64>);
 
 #[inline]
-fn by_area(surface: &Surface, v: (f64, f64)) -> Point {
+fn of_surface(
+    surface: &Surface,
+    id: u32,
+    pdf: PdfA,
+    pmf: f64,
+    points: Points,
+    (p, time): (DVec3, f64),
+    v: (f64, f64),
+) -> Option<LightSample> {
+    let (point, frame, solid_angle) = match points {
+        Points::SolidAngle => by_solid_angle(surface, (p, time), v)?,
+        Points::Area => by_area(surface, time, v),
+    };
+    let to_light = point - p;
+    let distance_squared = to_light.length_squared();
+    let distance = distance_squared.sqrt();
+    let cos = -frame.n.dot(to_light) / distance;
+    if cos <= 0.0 || distance == 0.0 {
+        return None;
+    }
+    let pdf = match solid_angle {
+        Some(solid_angle) => PdfW(1.0 / solid_angle),
+        None => pdf.per_solid_angle(distance_squared, cos),
+    };
+    let pdf = PdfW(pmf * pdf.0);
+    let le = surface.material.le;
+    Some(LightSample { to_light, distance, le, weight: 1.0 / pdf.0, pdf: Some(pdf), surface: id })
+}
+
+#[inline]
+fn by_area(surface: &Surface, time: f64, v: (f64, f64)) -> Point {
     let (point, frame) = surface.sample_area(v);
-    (point, frame, None)
+    (point + surface.velocity * time, frame, None)
 }
 
 /// Uniform over the solid angle, or over the area where the shape has no such map; nothing where the shape subtends no
 /// solid angle.
 #[inline]
-fn by_solid_angle(surface: &Surface, p: DVec3, v: (f64, f64)) -> Option<Point> {
+fn by_solid_angle(surface: &Surface, (p, time): (DVec3, f64), v: (f64, f64)) -> Option<Point> {
+    let moved = surface.velocity * time;
+    let from = p - moved; // where the receiver is, seen from the emitter's place at time 0
     let sample = match &surface.shape {
-        Shape::Rectangle(r) => solid_angle::rectangle(p, r.center, r.half_u, r.half_v, v)?,
-        Shape::Triangle(t) => solid_angle::triangle(p, t.a, t.b, t.c, v)?,
+        Shape::Rectangle(r) => solid_angle::rectangle(from, r.center, r.half_u, r.half_v, v)?,
+        Shape::Triangle(t) => solid_angle::triangle(from, t.a, t.b, t.c, v)?,
         Shape::Sphere(s) if !s.inward && s.low <= -1.0 && s.high >= 1.0 => {
-            solid_angle::sphere(p, s.center, s.radius, v)?
+            solid_angle::sphere(from, s.center, s.radius, v)?
         }
-        _ => return Some(by_area(surface, v)),
+        _ => return Some(by_area(surface, time, v)),
     };
     let (point, frame) = surface.at(sample.point);
-    Some((point, frame, Some(sample.solid_angle)))
+    Some((point + moved, frame, Some(sample.solid_angle)))
 }

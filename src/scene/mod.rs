@@ -1,44 +1,54 @@
 //! What is lit and what looks at it: surfaces, emitters and a sensor. Knows nothing of estimators.
 //!
-//! Every surface is one-sided: it reflects and emits on its front and is black from behind.
+//! Every surface is one-sided, but for clear interfaces: it reflects and emits on its front and is black from behind.
 //! There is no epsilon anywhere: a ray knows the surface that it leaves, and a flat surface cannot hit itself,
 //! while a sphere's second intersection follows from the first.
 
 pub mod bsdf;
 pub mod camera;
 mod cornell;
+pub mod cornell_flush;
+pub mod fresnel;
 pub mod geometry;
 pub mod lanes;
 pub mod library;
 pub mod light;
+pub mod sky;
 pub mod solid_angle;
 pub mod spheres;
 mod surface;
 
-pub use bsdf::{Directions, Material};
+pub use bsdf::{Bsdf, Directions, Material};
 pub use camera::Sensor;
 pub use geometry::{Ray, Shape};
-pub use light::{LightSample, LightSampling};
+pub use light::{LightSample, LightSampling, Pick, PointLight, Points};
+pub use sky::Sky;
 pub use surface::Surface;
 
 use crate::sampling::warp::Frame;
+use crate::sampling::{PdfW, Stream};
 use glam::DVec3;
 use lanes::RectangleLanes;
 use light::Lights;
+use sky::{BLACK, SKY};
 use spheres::Spheres;
 
 /// Red, green, blue: radiance [W m^-2 sr^-1], albedo or throughput, component by component.
 pub type Rgb = DVec3;
 
-/// The front of a surface, met by a ray.
+/// A surface met by a ray: its front, either side of a clear interface, or the sky.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<'a> {
     /// The point [scene units].
     pub p: DVec3,
     /// Frame around the unit normal on the front side.
     pub frame: Frame,
-    /// Albedo and emission at the point.
+    /// Unit direction back along the ray.
+    pub wo: DVec3,
+    /// What is there.
     pub material: &'a Material,
+    /// Radiance emitted towards `wo` [W m^-2 sr^-1].
+    pub le: Rgb,
     /// Which surface was hit.
     pub surface: u32,
 }
@@ -49,6 +59,18 @@ impl Hit<'_> {
     pub fn spawn(&self, wi: DVec3) -> Ray {
         Ray { o: self.p, d: wi, from: self.surface }
     }
+
+    /// Whether it is the sky, where nothing scatters.
+    #[inline]
+    pub fn is_sky(&self) -> bool {
+        self.surface == SKY
+    }
+
+    /// Fraction of the light that goes on towards `wo`, channel by channel.
+    #[inline]
+    pub fn albedo(&self) -> Rgb {
+        self.material.bsdf.albedo(self.frame.n.dot(self.wo).abs())
+    }
 }
 
 /// An immutable scene with its sensor.
@@ -57,61 +79,103 @@ pub struct Scene {
     surfaces: Vec<Surface>,
     rectangles: RectangleLanes,
     spheres: Spheres,
-    /// Triangles and disks.
+    /// Triangles, disks and what moves.
     others: Vec<u32>,
+    moves: bool,
     lights: Lights,
     /// What is measured.
     pub sensor: Sensor,
 }
 
+/// Where a path starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// The first ray.
+    pub ray: Ray,
+    /// Factor that turns its radiance into the measured quantity.
+    pub response: f64,
+    /// The moment at which all of the path happens, in [0, 1) of the exposure.
+    pub time: f64,
+}
+
 impl Scene {
     /// A scene of the given surfaces, in the given order.
     pub fn new(surfaces: Vec<Surface>, sensor: Sensor) -> Self {
-        let lights = Lights::new(&surfaces);
-        let rectangles = RectangleLanes::new(&surfaces);
-        let spheres = Spheres::new(&surfaces);
-        let is_other = |s: &Surface| matches!(s.shape, Shape::Triangle(_) | Shape::Disk(_));
-        let others = (0u32..).zip(&surfaces).filter(|(_, s)| is_other(s)).map(|(id, _)| id).collect();
-        Scene { surfaces, rectangles, spheres, others, lights, sensor }
+        Scene::lit_by(surfaces, &[], None, sensor)
     }
 
-    /// The nearest surface along the ray, if it shows its front: a back is black, as is the void around an open scene.
+    /// A scene that is lit by its surfaces, by points and by the sky.
+    pub fn lit_by(surfaces: Vec<Surface>, points: &[PointLight], sky: Option<Sky>, sensor: Sensor) -> Self {
+        let (low, high) = surfaces
+            .iter()
+            .map(|s| s.shape.bounds())
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
+        let lights = Lights::new(&surfaces, points, sky, 0.5 * (high - low).length());
+        let rectangles = RectangleLanes::new(&surfaces);
+        let spheres = Spheres::new(&surfaces);
+        let is_other = |s: &Surface| s.moves() || matches!(s.shape, Shape::Triangle(_) | Shape::Disk(_));
+        let others = (0u32..).zip(&surfaces).filter(|(_, s)| is_other(s)).map(|(id, _)| id).collect();
+        let moves = surfaces.iter().any(Surface::moves);
+        Scene { surfaces, rectangles, spheres, others, moves, lights, sensor }
+    }
+
+    /// Draws the start of a path that measures pixel `(x, y)`, from the top left.
     #[inline]
-    pub fn intersect(&self, ray: &Ray) -> Option<Hit<'_>> {
+    pub fn start(&self, pixel: (u32, u32), stream: &mut Stream) -> Start {
+        let (ray, response) = self.sensor.ray(pixel, stream);
+        Start { ray, response, time: if self.moves { stream.u1() } else { 0.0 } }
+    }
+
+    /// What the ray meets first at `time`: `None` for the void around an open scene and for a back, which is black.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, time: f64) -> Option<Hit<'_>> {
         let (mut t, mut id) = self.rectangles.nearest(ray);
         let (t_sphere, sphere) = self.spheres.nearest(ray);
         if t_sphere < t {
             (t, id) = (t_sphere, sphere);
         }
         for &other in self.others.iter().filter(|&&other| other != ray.from) {
-            let candidate = self.surfaces[other as usize].shape.intersect_flat(ray);
+            let candidate = self.surfaces[other as usize].intersect_flat(ray, time);
             if candidate < t {
                 (t, id) = (candidate, other);
             }
         }
         if t == f64::INFINITY {
-            return None;
+            return self.lights.sky().map(|sky| sky_hit(sky, ray));
         }
         let surface = &self.surfaces[id as usize];
         let (p, frame) = surface.at(ray.o + t * ray.d);
-        let front = frame.n.dot(ray.d) < 0.0;
-        front.then_some(Hit { p, frame, material: &surface.material, surface: id })
+        let material = &surface.material;
+        let seen = frame.n.dot(ray.d) < 0.0 || material.bsdf.is_clear();
+        seen.then_some(Hit { p, frame, wo: -ray.d, material, le: material.le, surface: id })
     }
 
     /// Whether nothing stands between the point `ray.o` on surface `ray.from` and `ray.o + ray.d` on surface `to`.
     #[inline]
-    pub fn visible(&self, ray: &Ray, to: u32) -> bool {
+    pub fn visible(&self, ray: &Ray, time: f64, to: u32) -> bool {
         let blocks = |&other: &u32| {
-            other != ray.from && other != to && self.surfaces[other as usize].shape.intersect_flat(ray) < 1.0
+            other != ray.from && other != to && self.surfaces[other as usize].intersect_flat(ray, time) < 1.0
         };
         !self.rectangles.blocks(ray, to) && !self.spheres.blocks(ray, to) && !self.others.iter().any(blocks)
     }
 
-    /// A point on an emitter as seen from `p`, the emitter picked in proportion to its power.
-    /// `u` picks the light, `v` the point. `None` where the sampled point cannot send light to `p` (visibility aside).
+    /// A point on an emitter as seen from `p` at `time`. `u` picks the light, `v` the point.
+    /// `None` where the sampled point cannot send light to `p` (visibility aside).
     #[inline]
-    pub fn sample_light(&self, how: LightSampling, p: DVec3, u: f64, v: (f64, f64)) -> Option<LightSample> {
-        self.lights.sample(&self.surfaces, how, p, u, v)
+    pub fn sample_light(
+        &self,
+        how: LightSampling,
+        at: (DVec3, f64),
+        u: f64,
+        v: (f64, f64),
+    ) -> Option<LightSample> {
+        self.lights.sample(&self.surfaces, how, at, u, v)
+    }
+
+    /// Density [1/sr] with which [`Scene::sample_light`] at `ray.o` would have drawn the way to what `ray` hit.
+    #[inline]
+    pub fn light_pdf(&self, how: LightSampling, ray: &Ray, hit: &Hit<'_>, time: f64) -> PdfW {
+        self.lights.pdf(&self.surfaces, how, ray, hit, time)
     }
 
     /// The surfaces in their order.
@@ -125,8 +189,22 @@ impl Scene {
         self.lights.count()
     }
 
-    /// The largest albedo of any surface and channel: bounds how slowly throughput can fall.
-    pub fn max_albedo(&self) -> f64 {
-        self.surfaces.iter().map(|s| s.material.albedo.max_element()).fold(0.0, f64::max)
+    /// Whether all light comes from points, which no ray can find by chance.
+    pub fn is_lit_by_points_only(&self) -> bool {
+        self.lights.has_points()
+            && self.lights.sky().is_none()
+            && self.surfaces.iter().all(|s| s.material.le == Rgb::ZERO)
     }
+
+    /// The largest albedo of any surface and channel: bounds how slowly throughput can fall. Clear interfaces do not
+    /// count: walks leave them by geometry.
+    pub fn max_albedo(&self) -> f64 {
+        let opaque = self.surfaces.iter().map(|s| s.material.bsdf).filter(|bsdf| !bsdf.is_clear());
+        opaque.map(|bsdf| bsdf.albedo(1.0).max_element()).fold(0.0, f64::max)
+    }
+}
+
+fn sky_hit<'a>(sky: &Sky, ray: &Ray) -> Hit<'a> {
+    let (p, frame) = (ray.o + ray.d * sky::FAR, Frame::around(-ray.d));
+    Hit { p, frame, wo: -ray.d, material: &BLACK, le: sky.radiance(ray.d), surface: SKY }
 }

@@ -1,6 +1,6 @@
 //! A shape with its material and what is worth computing once.
 
-use super::{Material, Shape};
+use super::{Material, Ray, Shape};
 use crate::sampling::warp::{self, Frame};
 use glam::DVec3;
 
@@ -9,16 +9,37 @@ use glam::DVec3;
 pub struct Surface {
     /// Where it is; its front is the side its normal points to.
     pub shape: Shape,
-    /// What its front reflects and emits.
+    /// What it is made of.
     pub material: Material,
+    /// Way that it goes while the shutter is open, from time 0 to time 1; zero for a sphere.
+    pub velocity: DVec3,
     /// Frame around the front's normal; for a sphere, around its axis.
     frame: Frame,
 }
 
 impl Surface {
-    /// A surface.
+    /// A surface at rest.
     pub fn new(shape: Shape, material: Material) -> Self {
-        Surface { shape, material, frame: Frame::around(shape.direction()) }
+        Surface::moving(shape, material, DVec3::ZERO)
+    }
+
+    /// A surface that goes this way while the shutter is open.
+    pub fn moving(shape: Shape, material: Material, velocity: DVec3) -> Self {
+        Surface { shape, material, velocity, frame: Frame::around(shape.direction()) }
+    }
+
+    /// Whether it moves.
+    pub fn moves(&self) -> bool {
+        self.velocity != DVec3::ZERO
+    }
+
+    /// Distance along the ray to this flat surface, where it is at `time`; see [`Shape::intersect_flat`].
+    #[inline]
+    pub fn intersect_flat(&self, ray: &Ray, time: f64) -> f64 {
+        if self.moves() {
+            return self.shape.intersect_flat(&Ray { o: ray.o - self.velocity * time, ..*ray });
+        }
+        self.shape.intersect_flat(ray)
     }
 
     /// The point of the surface nearest to `p`, which lies there up to rounding, and the frame of the front's normal.

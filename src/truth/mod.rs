@@ -1,6 +1,7 @@
 //! Reference values, always with an error: closed forms, and stored images of an independent renderer.
 
 pub mod enclosure;
+pub mod gallery;
 pub mod moments;
 pub mod optimum;
 pub mod reference;
@@ -11,7 +12,7 @@ pub use reference::Reference;
 
 use crate::estimator::{Estimate, Estimator, Property};
 use crate::scene::library::{Patch, SceneKind, View};
-use crate::scene::{LightSampling, Rgb};
+use crate::scene::{Points, Rgb};
 use enclosure::Walk;
 use moments::Central;
 use std::f64::consts::PI;
@@ -59,9 +60,11 @@ impl ClosedForm {
             SceneKind::IntegratingSphere { patches, looks_at, view } => {
                 (patches.clone(), *looks_at, view, true)
             }
-            SceneKind::CornellBox { .. } | SceneKind::CornellEmpty { .. } | SceneKind::Custom { .. } => {
-                return None;
-            }
+            SceneKind::CornellBox { .. }
+            | SceneKind::CornellEmpty { .. }
+            | SceneKind::CornellFlush { .. }
+            | SceneKind::Exhibit { .. }
+            | SceneKind::Custom { .. } => return None,
         };
         let (start, response) = match view {
             View::Probe => (Some(looks_at), 1.0),
@@ -150,7 +153,7 @@ impl ClosedForm {
     /// averaged over receivers: infinite variance in every box.
     fn light_touches_walls(&self) -> bool {
         !self.spherical
-            && matches!(&self.estimator, Estimator::Explicit(e) if e.lights == LightSampling::Area)
+            && matches!(&self.estimator, Estimator::Explicit(e) if e.lights.points == Points::Area)
             && self.estimator.roulette().reaches(2)
     }
 }

@@ -6,9 +6,10 @@ mod walk;
 
 pub use claim::{Claim, Limits, Plot, Quantity};
 pub use scene::{
-    FurnaceSpec, LooksAt, PrimitiveSpec, PrimitivesSpec, SceneSpec, SensorSpec, ShapeSpec, SphereSpec,
+    BsdfSpec, FlushSpec, FurnaceSpec, LooksAt, PointSpec, PrimitiveSpec, PrimitivesSpec, SceneSpec,
+    SensorSpec, ShapeSpec, SkySpec, SphereSpec,
 };
-pub use walk::{EstimatorSpec, RouletteSpec};
+pub use walk::{EstimatorSpec, RouletteSpec, TechniqueSpec};
 
 use super::error::Error;
 use super::input::{self, Named, Tables};

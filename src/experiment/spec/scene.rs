@@ -2,7 +2,7 @@
 
 use crate::experiment::input::{self, Sweep};
 use crate::scene::Rgb;
-use crate::scene::camera::Pinhole;
+use crate::scene::camera::Lens;
 use crate::scene::geometry::{Disk, Rectangle, Triangle};
 use crate::scene::library::View;
 use glam::DVec3;
@@ -22,6 +22,16 @@ pub enum SceneSpec {
     CornellBox(CornellSpec),
     /// See [`crate::scene::library::SceneKind::CornellEmpty`].
     CornellEmpty(CornellSpec),
+    /// See [`crate::scene::library::SceneKind::CornellFlush`].
+    CornellFlush(FlushSpec),
+    /// A scene of the gallery, which has a closed form; see [`crate::truth::gallery`].
+    Exhibit {
+        /// Its name in the gallery.
+        name: String,
+        /// Its parameter, if it is not to have its usual value.
+        #[serde(default)]
+        parameter: Option<Sweep>,
+    },
     /// Written out primitive by primitive.
     Primitives(PrimitivesSpec),
 }
@@ -124,6 +134,23 @@ impl Default for CornellSpec {
     }
 }
 
+/// A Cornell box for closed forms.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FlushSpec {
+    /// Which tiles are measured, 1 to 6.
+    #[serde(deserialize_with = "input::tiles")]
+    pub tile: Sweep,
+    /// Whether the two blocks stand in it.
+    pub blocks: bool,
+}
+
+impl Default for FlushSpec {
+    fn default() -> Self {
+        FlushSpec { tile: Sweep(vec![1.0]), blocks: false }
+    }
+}
+
 /// A scene written out in the file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -132,6 +159,12 @@ pub struct PrimitivesSpec {
     pub name: String,
     /// Its surfaces.
     pub primitives: Vec<PrimitiveSpec>,
+    /// Lights without extent.
+    #[serde(default)]
+    pub points: Vec<PointSpec>,
+    /// Light from infinity.
+    #[serde(default)]
+    pub sky: Option<SkySpec>,
     /// What is measured.
     pub sensor: SensorSpec,
 }
@@ -142,12 +175,81 @@ pub struct PrimitivesSpec {
 pub struct PrimitiveSpec {
     /// Where it is.
     pub shape: ShapeSpec,
-    /// What it reflects.
-    #[serde(default, deserialize_with = "input::albedo")]
-    pub albedo: Rgb,
+    /// What it reflects as a Lambert surface.
+    #[serde(default, deserialize_with = "input::optional_albedo")]
+    pub albedo: Option<Rgb>,
+    /// What it is made of, if it is no Lambert surface.
+    #[serde(default)]
+    pub bsdf: Option<BsdfSpec>,
     /// What it emits.
     #[serde(default, deserialize_with = "input::radiance")]
     pub emission: Rgb,
+    /// Way that it goes while the shutter is open.
+    #[serde(default, deserialize_with = "input::vector")]
+    pub velocity: DVec3,
+}
+
+/// What a surface is made of.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum BsdfSpec {
+    /// A perfect mirror.
+    Mirror {
+        /// Fraction reflected at all angles.
+        #[serde(deserialize_with = "input::albedo")]
+        reflectance: Rgb,
+    },
+    /// A polished metal.
+    Conductor {
+        /// Real part of the refractive index.
+        #[serde(deserialize_with = "input::index")]
+        eta: Rgb,
+        /// Imaginary part.
+        #[serde(deserialize_with = "input::index")]
+        k: Rgb,
+    },
+    /// A clear interface, seen from both sides.
+    Dielectric {
+        /// Refractive index behind it, relative to the one in front.
+        #[serde(deserialize_with = "input::length")]
+        ior: f64,
+    },
+}
+
+/// A light without extent.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointSpec {
+    /// Where it is.
+    #[serde(deserialize_with = "input::vector")]
+    pub position: DVec3,
+    /// Radiant intensity [W sr^-1].
+    #[serde(deserialize_with = "input::radiance")]
+    pub intensity: Rgb,
+}
+
+/// Light from infinity.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum SkySpec {
+    /// The same from everywhere.
+    Uniform {
+        /// Radiance.
+        #[serde(deserialize_with = "input::radiance")]
+        radiance: Rgb,
+    },
+    /// radiance cos^exponent of the angle to `up`.
+    Cosine {
+        /// Radiance from straight above.
+        #[serde(deserialize_with = "input::radiance")]
+        radiance: Rgb,
+        /// Exponent, above 0.
+        #[serde(deserialize_with = "input::length")]
+        exponent: f64,
+        /// Where it is brightest.
+        #[serde(deserialize_with = "input::direction")]
+        up: DVec3,
+    },
 }
 
 /// A shape written out in the file; it shows one side, the front, and is black from behind.
@@ -215,7 +317,22 @@ pub enum SensorSpec {
         #[serde(deserialize_with = "input::direction")]
         normal: DVec3,
     },
-    /// A pinhole camera with square images.
+    /// Parallel rays through a rectangle.
+    Parallel {
+        /// The rectangle's centre.
+        #[serde(deserialize_with = "input::vector")]
+        center: DVec3,
+        /// Where it looks.
+        #[serde(deserialize_with = "input::direction")]
+        direction: DVec3,
+        /// Half of one edge.
+        #[serde(deserialize_with = "input::vector")]
+        half_u: DVec3,
+        /// Half of the other edge.
+        #[serde(deserialize_with = "input::vector")]
+        half_v: DVec3,
+    },
+    /// A camera with square images.
     Camera {
         /// Where the eye is.
         #[serde(deserialize_with = "input::vector")]
@@ -232,17 +349,8 @@ pub enum SensorSpec {
         /// Pixels along each edge.
         #[serde(deserialize_with = "input::resolution")]
         resolution: u32,
+        /// A thin lens instead of the pinhole.
+        #[serde(default)]
+        lens: Option<Lens>,
     },
-}
-
-impl SensorSpec {
-    /// The camera, if it is one.
-    pub fn pinhole(&self) -> Option<Pinhole> {
-        match *self {
-            SensorSpec::Camera { origin, direction, up, fov, resolution } => {
-                Some(Pinhole::new(origin, direction, up, fov, (resolution, resolution)))
-            }
-            _ => None,
-        }
-    }
 }

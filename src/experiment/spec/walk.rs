@@ -1,7 +1,8 @@
 //! Estimators and termination rules as files write them.
 
+use crate::estimator::Heuristic;
 use crate::experiment::input::{self, Sweep};
-use crate::scene::{Directions, LightSampling};
+use crate::scene::{Directions, Pick, Points};
 use serde::Deserialize;
 
 /// An estimator.
@@ -28,13 +29,35 @@ pub enum EstimatorSpec {
     },
     /// Direct light sampled on the emitters.
     Explicit {
+        /// Which technique finds direct light.
+        #[serde(default)]
+        technique: TechniqueSpec,
+        /// How `both` techniques are weighted.
+        #[serde(default)]
+        heuristic: Heuristic,
         /// How points on emitters are drawn.
         #[serde(default)]
-        lights: LightSampling,
+        lights: Points,
+        /// How an emitter is picked.
+        #[serde(default)]
+        pick: Pick,
         /// How directions are drawn.
         #[serde(default)]
         directions: Directions,
     },
+}
+
+/// Which technique finds direct light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TechniqueSpec {
+    /// Points sampled on the emitters.
+    #[default]
+    Light,
+    /// Continued directions.
+    Direction,
+    /// Both, weighted by the heuristic.
+    Both,
 }
 
 /// A termination rule.
