@@ -27,6 +27,7 @@ pub const TILES: [(usize, f64, Range<f64>, Range<f64>); 6] = [
 ];
 
 /// A block: corner on the floor (x, z), two edges (x, z) from there, and height, in 1/555.
+#[derive(Clone, Copy, Debug)]
 pub struct Block {
     /// The corner.
     pub corner: [f64; 2],
@@ -77,7 +78,7 @@ pub fn cornell_flush(tile: usize, blocks: bool) -> Scene {
 }
 
 /// A rectangle of a wall of the cube, its front towards the inside.
-fn plate(axis: usize, at: f64, a: &Range<f64>, b: &Range<f64>) -> Rectangle {
+pub fn plate(axis: usize, at: f64, a: &Range<f64>, b: &Range<f64>) -> Rectangle {
     let [first, second] = [[1, 2], [0, 2], [0, 1]][axis].map(|i| DVec3::AXES[i]);
     let middle = |r: &Range<f64>| 0.5 * (r.start + r.end);
     let (half_u, half_v) = (0.5 * (a.end - a.start) * first, 0.5 * (b.end - b.start) * second);

@@ -136,6 +136,18 @@ impl Shape {
         }
     }
 
+    /// Corners of a flat shape with straight edges, counter-clockwise as seen from its front; none of other shapes.
+    pub fn corners(&self) -> Vec<DVec3> {
+        match self {
+            Shape::Rectangle(r) => {
+                let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+                signs.map(|(a, b)| r.center + a * r.half_u + b * r.half_v).to_vec()
+            }
+            Shape::Triangle(t) => vec![t.a, t.b, t.c],
+            Shape::Disk(_) | Shape::Sphere(_) => Vec::new(),
+        }
+    }
+
     /// Lowest and highest coordinates of a box around it (not always the smallest).
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let around = |center: DVec3, reach: DVec3| (center - reach, center + reach);

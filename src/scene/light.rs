@@ -133,11 +133,6 @@ impl Lights {
         self.sky.as_ref()
     }
 
-    /// Whether some light comes from points, which no ray can hit.
-    pub fn has_points(&self) -> bool {
-        self.lights.iter().any(|l| matches!(l.emitter, Emitter::Point(_)))
-    }
-
     /// One light and the probability of its choice.
     #[inline]
     fn pick(&self, pick: Pick, u: f64) -> Option<(&Light, f64)> {

@@ -189,13 +189,6 @@ impl Scene {
         self.lights.count()
     }
 
-    /// Whether all light comes from points, which no ray can find by chance.
-    pub fn is_lit_by_points_only(&self) -> bool {
-        self.lights.has_points()
-            && self.lights.sky().is_none()
-            && self.surfaces.iter().all(|s| s.material.le == Rgb::ZERO)
-    }
-
     /// The largest albedo of any surface and channel: bounds how slowly throughput can fall. Clear interfaces do not
     /// count: walks leave them by geometry.
     pub fn max_albedo(&self) -> f64 {

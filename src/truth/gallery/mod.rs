@@ -3,16 +3,57 @@
 //! A new one is a file here and its line in [`EXHIBITS`]. None is symmetrical without need, of unit size or at the
 //! origin: symmetry hides mistakes.
 
+mod clear_slab;
 mod disk_light;
+mod glass_ball;
+mod hidden_light;
+mod lens_edge;
+mod metal_light;
+mod mirror_furnace;
+mod mirror_light;
+mod moving_edge;
+mod pixel_edge;
+mod point_in_sphere;
+mod point_over_plane;
+mod polygon_light;
+mod pool_caustic;
+mod props;
+mod rising_light;
+mod sky_over_plane;
+mod sphere_light;
+mod unequal_lights;
+mod uniform_sky;
+mod water_floor;
 
-use crate::estimator::Estimator;
-use crate::scene::Rgb;
-use crate::scene::library::{SceneKind, Setting};
-use crate::truth::Counted;
+use super::Counted;
+use crate::estimator::{Estimator, Explicit, Roulette, Rule, Technique};
+use crate::scene::library::{Primitive, SceneKind, Setting};
+use crate::scene::{Directions, Rgb};
 use std::ops::RangeInclusive;
 
 /// All of them.
-pub const EXHIBITS: [&Exhibit; 1] = [&disk_light::EXHIBIT];
+pub const EXHIBITS: [&Exhibit; 20] = [
+    &disk_light::EXHIBIT,
+    &polygon_light::EXHIBIT,
+    &sphere_light::EXHIBIT,
+    &unequal_lights::EXHIBIT,
+    &hidden_light::EXHIBIT,
+    &point_over_plane::EXHIBIT,
+    &point_in_sphere::EXHIBIT,
+    &uniform_sky::EXHIBIT,
+    &sky_over_plane::EXHIBIT,
+    &mirror_light::EXHIBIT,
+    &metal_light::EXHIBIT,
+    &mirror_furnace::EXHIBIT,
+    &glass_ball::EXHIBIT,
+    &clear_slab::EXHIBIT,
+    &water_floor::EXHIBIT,
+    &pool_caustic::EXHIBIT,
+    &pixel_edge::EXHIBIT,
+    &lens_edge::EXHIBIT,
+    &moving_edge::EXHIBIT,
+    &rising_light::EXHIBIT,
+];
 
 /// A scene with a closed form.
 pub struct Exhibit {
@@ -26,6 +67,8 @@ pub struct Exhibit {
     pub setting: fn(f64) -> Setting,
     /// What light does there.
     pub theory: fn(f64) -> Series,
+    /// The part of it that this estimator has no way to find.
+    pub missed: fn(f64, &Estimator) -> Option<Series>,
     /// Variance of one sample, where it is known.
     pub variance: fn(f64, &Estimator) -> Option<Rgb>,
 }
@@ -80,6 +123,57 @@ impl Exhibit {
     pub fn scene(&self, parameter: f64) -> SceneKind {
         SceneKind::Exhibit { name: self.name.to_owned(), parameter, setting: (self.setting)(parameter) }
     }
+}
+
+/// Every path tracer finds all of it.
+fn nothing_missed(_: f64, _: &Estimator) -> Option<Series> {
+    None
+}
+
+/// Whether the first continuation is one sample, certain and unweighted.
+fn one_sample(roulette: &Roulette) -> bool {
+    roulette.rule == Rule::None && roulette.reaches(1)
+}
+
+/// Whether light is found by one cosine-weighted direction without roulette, and in no other way.
+fn cosine_without_roulette(estimator: &Estimator) -> bool {
+    match estimator {
+        Estimator::Implicit(e) => e.directions == Directions::Cosine && one_sample(&e.roulette),
+        Estimator::Explicit(e) => {
+            e.technique == Technique::Direction
+                && e.directions == Directions::Cosine
+                && one_sample(&e.roulette)
+        }
+        Estimator::Recursive(_) => false,
+    }
+}
+
+/// Variance of a picture that shows `le` with probability `p`.
+fn covered(le: Rgb, p: f64) -> Rgb {
+    le * le * (p * (1.0 - p))
+}
+
+/// Whether direct light is sampled on emitters alone, and directions by the cosine.
+fn sampled_by_cosine(e: &Explicit) -> bool {
+    e.technique == Technique::Light && e.directions == Directions::Cosine
+}
+
+/// Variance of light found by cosine-weighted directions alone, where it fills the fraction `form_factor` of the
+/// hemisphere weighted by the cosine, and nothing else shines: (albedo Le)² (F / (N q) + F² (1 - 1/N) - F²), for N
+/// samples that each survive with probability q.
+fn by_chance(estimator: &Estimator, form_factor: f64, albedo: Rgb, le: Rgb) -> Option<Rgb> {
+    let (samples, directions, roulette) = match estimator {
+        Estimator::Recursive(e) => (f64::from(e.samples), e.directions, e.roulette),
+        Estimator::Implicit(e) => (1.0, e.directions, e.roulette),
+        Estimator::Explicit(e) if e.technique == Technique::Direction => (1.0, e.directions, e.roulette),
+        Estimator::Explicit(_) => return None,
+    };
+    let q = roulette.q(0, Rgb::ONE, albedo);
+    if directions != Directions::Cosine || !(q > 0.0 && q <= 1.0) || !roulette.reaches(1) {
+        return None;
+    }
+    let scale = albedo * le;
+    Some(scale * scale * (form_factor * (1.0 / q - form_factor) / samples))
 }
 
 /// The exhibit of this name.

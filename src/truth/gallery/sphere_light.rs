@@ -1,0 +1,27 @@
+//! A ball of light above the horizon, cut by it, or below it.
+
+use super::props::{FLOOR, LE, TILTED, light, setting};
+use super::{Exhibit, Parameter, Series, by_chance, nothing_missed};
+use crate::scene::Rgb;
+use crate::truth::direct::form_factor;
+
+const RADIUS: f64 = 0.4;
+
+/// A point of a floor beside a ball.
+pub const EXHIBIT: Exhibit = Exhibit {
+    name: "sphere_light",
+    about: "A floor's point beside a ball of light, which the horizon cuts at heights within its radius",
+    parameter: Parameter { name: "height", usual: 0.9, range: -0.39..=10.0 },
+    setting: |height| {
+        let ball = TILTED.ball([0.7, -0.4, height], RADIUS);
+        setting(vec![TILTED.floor(), light(ball, LE)], TILTED.look_at_floor())
+    },
+    theory: |height| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(height)]),
+    missed: nothing_missed,
+    variance: |height, estimator| by_chance(estimator, form_factor(height), FLOOR, LE),
+};
+
+fn form_factor(height: f64) -> f64 {
+    let normal = TILTED.along(0.0, 0.0, 1.0);
+    form_factor::sphere(TILTED.at(0.0, 0.0, 0.0), normal, TILTED.at(0.7, -0.4, height), RADIUS)
+}
