@@ -2,7 +2,7 @@
 //! that the compiler cannot drop the geometry of a furnace, where radiance does not depend on where a ray goes.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule};
+use furnace::estimator::{Estimator, Explicit, Implicit, Pick, Roulette, Rule, Technique};
 use furnace::experiment::run::block_of;
 use furnace::sampling::Address;
 use furnace::scene::library::{Patch, SceneKind, View};
@@ -26,7 +26,16 @@ fn estimators() -> Vec<(&'static str, Estimator)> {
     let roulette = Roulette { rule: Rule::Throughput { floor: 0.05 }, from: 5, clamp: None };
     let (lights, directions) = (LightSampling::Area, Directions::Cosine);
     vec![
-        ("explicit", Estimator::Explicit(Explicit { lights, directions, roulette })),
+        (
+            "explicit",
+            Estimator::Explicit(Explicit {
+                lights,
+                directions,
+                roulette,
+                technique: Technique::Light,
+                pick: Pick::Power,
+            }),
+        ),
         ("implicit", Estimator::Implicit(Implicit { directions, roulette })),
     ]
 }

@@ -1,7 +1,7 @@
 //! `ClosedForm`, which follows raw moments numerically from bounce to bounce, against the formulas that the theory
 //! prints, written down here once more from the paper: the two share no code. Nothing is sampled.
 
-use furnace::estimator::{Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use furnace::estimator::{Estimator, Explicit, Implicit, Pick, Recursive, Roulette, Rule, Technique};
 use furnace::scene::library::{Patch, SceneKind, View};
 use furnace::scene::{Directions, LightSampling, Rgb};
 use furnace::truth::{ClosedForm, Counted, Known};
@@ -21,7 +21,13 @@ fn implicit(rule: Rule, from: u32) -> Estimator {
 
 fn explicit(rule: Rule) -> Estimator {
     let (lights, directions) = (LightSampling::Area, Directions::Cosine);
-    Estimator::Explicit(Explicit { lights, directions, roulette: Roulette::unclamped(rule) })
+    Estimator::Explicit(Explicit {
+        lights,
+        directions,
+        roulette: Roulette::unclamped(rule),
+        technique: Technique::Light,
+        pick: Pick::Power,
+    })
 }
 
 fn constant(q: f64) -> Rule {

@@ -5,7 +5,7 @@
 //! False alarms: about 3600 t tests with 63 degrees of freedom, each beyond [`LIMIT`] with probability 1.2e-14, together
 //! 5e-11; the rest up to 1e-9 is left for what skewness does to t. Cases are such that all moments to the eighth are finite.
 
-use furnace::estimator::{BINS, Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use furnace::estimator::{BINS, Estimator, Explicit, Implicit, Pick, Recursive, Roulette, Rule, Technique};
 use furnace::experiment::sample;
 use furnace::sampling::Address;
 use furnace::scene::library::{Patch, SceneKind, View};
@@ -194,7 +194,13 @@ fn implicit(roulette: Roulette) -> Estimator {
 }
 
 fn explicit(roulette: Roulette) -> Estimator {
-    Estimator::Explicit(Explicit { lights: LightSampling::Area, directions: Directions::Cosine, roulette })
+    Estimator::Explicit(Explicit {
+        lights: LightSampling::Area,
+        directions: Directions::Cosine,
+        roulette,
+        technique: Technique::Light,
+        pick: Pick::Power,
+    })
 }
 
 const CONSTANT: Rule = Rule::Constant { q: 0.7 };

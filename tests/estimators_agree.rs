@@ -6,7 +6,9 @@
 //! only means are compared that are known to 5 %: light that is found by chance and rarely, as late bounces are by
 //! implicit estimators, is no matter for a t test. Together 2e-11.
 
-use furnace::estimator::{Estimate, Estimator, Explicit, Implicit, Property, Recursive, Roulette, Rule};
+use furnace::estimator::{
+    Estimate, Estimator, Explicit, Implicit, Pick, Property, Recursive, Roulette, Rule, Technique,
+};
 use furnace::experiment::{Cell, sample};
 use furnace::sampling::Address;
 use furnace::scene::camera::Pinhole;
@@ -39,7 +41,13 @@ fn agree(what: &str, a: Mean, b: Mean) {
 }
 
 fn explicit(lights: LightSampling, directions: Directions, roulette: Roulette) -> Estimator {
-    Estimator::Explicit(Explicit { lights, directions, roulette })
+    Estimator::Explicit(Explicit {
+        lights,
+        directions,
+        roulette,
+        technique: Technique::Light,
+        pick: Pick::Power,
+    })
 }
 
 /// Throughput roulette bounds throughput whatever directions are drawn, so that variances are finite.

@@ -2,7 +2,7 @@
 //! nothing can hide in them: a bias of 1e-11 fails.
 
 use furnace::estimator::{
-    BINS, Ctx, Estimate, Estimator, Explicit, Implicit, Recursive, Roulette, Rule, Tally,
+    BINS, Ctx, Estimate, Estimator, Explicit, Implicit, Pick, Recursive, Roulette, Rule, Tally, Technique,
 };
 use furnace::sampling::Address;
 use furnace::scene::library::{Patch, SceneKind, View};
@@ -26,7 +26,13 @@ fn implicit(roulette: Roulette) -> Estimator {
 }
 
 fn explicit(lights: LightSampling, roulette: Roulette) -> Estimator {
-    Estimator::Explicit(Explicit { lights, directions: Directions::Cosine, roulette })
+    Estimator::Explicit(Explicit {
+        lights,
+        directions: Directions::Cosine,
+        roulette,
+        technique: Technique::Light,
+        pick: Pick::Power,
+    })
 }
 
 /// Calls `check` with one sample after the other.

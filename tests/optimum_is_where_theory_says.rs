@@ -1,7 +1,7 @@
 //! The most efficient constant q, found by a search over closed forms, against the formulas of the theory, B and C-iv.
 //! A golden-section search near a flat maximum resolves half the digits of an f64, so 1e-6 is asked for.
 
-use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule};
+use furnace::estimator::{Estimator, Explicit, Implicit, Pick, Roulette, Rule, Technique};
 use furnace::scene::library::{Patch, SceneKind, View};
 use furnace::scene::{Directions, LightSampling, Rgb};
 use furnace::truth::optimum::efficiency;
@@ -16,7 +16,13 @@ fn implicit(directions: Directions) -> Estimator {
 
 fn explicit() -> Estimator {
     let (lights, directions) = (LightSampling::Area, Directions::Cosine);
-    Estimator::Explicit(Explicit { lights, directions, roulette: IGNORED })
+    Estimator::Explicit(Explicit {
+        lights,
+        directions,
+        roulette: IGNORED,
+        technique: Technique::Light,
+        pick: Pick::Power,
+    })
 }
 
 fn furnace(albedo: Rgb) -> SceneKind {

@@ -18,6 +18,48 @@ pub struct Explicit {
     pub directions: Directions,
     /// When the walk ends.
     pub roulette: Roulette,
+    /// Which of two ways to find a light counts.
+    #[serde(default)]
+    pub technique: Technique,
+    /// How a light is picked among several.
+    #[serde(default)]
+    pub pick: Pick,
+}
+
+/// Which of two ways to find a light counts: a sampled point on it, or a continued direction that happens to hit it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Technique {
+    /// Points sampled on the emitters alone: next-event estimation.
+    #[default]
+    Light,
+    /// Hits of continued directions alone: the implicit estimator.
+    Direction,
+    /// Both, in a weighted sum: multiple importance sampling [Veach 1997, ch. 9].
+    Both(Heuristic),
+}
+
+/// How much of a sample counts that the other technique might have drawn with density p' instead of p
+/// [Veach 1997, sec. 9.2].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Heuristic {
+    /// p / (p + p').
+    #[default]
+    Balance,
+    /// p^2 / (p^2 + p'^2).
+    Power,
+}
+
+/// How a light is picked among several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pick {
+    /// In proportion to its power.
+    #[default]
+    Power,
+    /// Each with the same probability.
+    Uniform,
 }
 
 impl Estimate for Explicit {

@@ -7,7 +7,7 @@ pub mod recursive;
 pub mod roulette;
 
 pub use ctx::{BINS, Ctx, MAX_RAYS, Tally};
-pub use explicit::Explicit;
+pub use explicit::{Explicit, Heuristic, Pick, Technique};
 pub use implicit::Implicit;
 pub use recursive::Recursive;
 pub use roulette::{Roulette, Rule};
@@ -67,7 +67,13 @@ impl Estimator {
             all.push(Estimator::Implicit(Implicit { directions, roulette }));
             all.push(Estimator::Recursive(Recursive { samples: 2, directions, roulette }));
             for lights in [LightSampling::Area, LightSampling::SolidAngle] {
-                all.push(Estimator::Explicit(Explicit { lights, directions, roulette }));
+                all.push(Estimator::Explicit(Explicit {
+                    lights,
+                    directions,
+                    roulette,
+                    technique: Technique::Light,
+                    pick: Pick::Power,
+                }));
             }
         }
         all

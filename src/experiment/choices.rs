@@ -5,7 +5,7 @@ use super::spec::{
     EstimatorSpec, FurnaceSpec, LooksAt, PrimitiveSpec, PrimitivesSpec, RouletteSpec, SceneSpec, SensorSpec,
     ShapeSpec, SphereSpec,
 };
-use crate::estimator::{Estimator, Explicit, Implicit, Recursive, Roulette, Rule};
+use crate::estimator::{Estimator, Explicit, Implicit, Pick, Recursive, Roulette, Rule, Technique};
 use crate::scene::geometry::{Disk, SpherePatch};
 use crate::scene::library::{Patch, Primitive, SceneKind};
 use crate::scene::{Directions, LightSampling, Rgb, Sensor, Shape};
@@ -185,9 +185,13 @@ impl Untermined {
                 })
             }
             Untermined::Implicit(directions) => Estimator::Implicit(Implicit { directions, roulette }),
-            Untermined::Explicit(lights, directions) => {
-                Estimator::Explicit(Explicit { lights, directions, roulette })
-            }
+            Untermined::Explicit(lights, directions) => Estimator::Explicit(Explicit {
+                lights,
+                directions,
+                roulette,
+                technique: Technique::Light,
+                pick: Pick::Power,
+            }),
         }
     }
 }

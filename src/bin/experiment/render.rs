@@ -3,7 +3,7 @@
 use crate::args::{Options, Render};
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED};
-use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule};
+use furnace::estimator::{Estimator, Explicit, Implicit, Pick, Roulette, Rule, Technique};
 use furnace::experiment::{CellPlan, Error, run_cell};
 use furnace::report::images;
 use furnace::sampling::Address;
@@ -28,7 +28,13 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
     let roulette = Roulette { rule: Rule::Throughput { floor: 0.05 }, from: 5, clamp: None };
     let (lights, directions) = (LightSampling::Area, Directions::Cosine);
     let estimator = match args.estimator.as_str() {
-        "explicit" => Estimator::Explicit(Explicit { lights, directions, roulette }),
+        "explicit" => Estimator::Explicit(Explicit {
+            lights,
+            directions,
+            roulette,
+            technique: Technique::Light,
+            pick: Pick::Power,
+        }),
         "implicit" => Estimator::Implicit(Implicit { directions, roulette }),
         other => {
             return Err(Error::Refused(format!("no estimator `{other}`; there are explicit, implicit")));
