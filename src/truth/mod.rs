@@ -1,18 +1,21 @@
 //! Reference values, always with an error: closed forms, and stored images of an independent renderer.
 
 pub mod enclosure;
+pub mod linear;
 pub mod moments;
 pub mod optimum;
 pub mod reference;
+pub mod walk;
 
 pub use enclosure::{Counted, Enclosure};
 pub use optimum::{Optimum, best_constant_q};
 pub use reference::Reference;
+pub use walk::Walk;
 
-use crate::estimator::{Estimate, Estimator, Property};
+use crate::estimator::{Estimate, Estimator, Explicit, Property, Technique};
 use crate::scene::library::{Patch, SceneKind, View};
-use crate::scene::{LightSampling, Rgb};
-use enclosure::Walk;
+use crate::scene::{LightSampling, Material, Rgb};
+use enclosure::average;
 use moments::Central;
 use std::f64::consts::PI;
 
@@ -40,45 +43,43 @@ impl Known {
 /// Closed forms for one estimator in one scene, per channel and per bounce.
 pub struct ClosedForm {
     enclosure: Enclosure,
-    /// The patch that a probe looks at; `None` for a plate, which sees all of them.
-    start: Option<usize>,
+    /// With which probability the first ray meets each patch: one of them for a probe, all of them for a plate.
+    seen: Vec<f64>,
     /// π for a plate, 1 for a probe.
     response: f64,
-    /// Whether next-event estimation has a constant geometry term, as on a sphere.
-    spherical: bool,
     estimator: Estimator,
 }
 
 impl ClosedForm {
     /// The closed forms of `estimator` in `scene`, or `None` where the scene has none.
     pub fn of(scene: &SceneKind, estimator: &Estimator) -> Option<Self> {
-        let single = |albedo: Rgb, emission: Rgb| vec![Patch { fraction: 1.0, albedo, emission }];
-        let (patches, looks_at, view, spherical) = match scene {
-            SceneKind::Furnace { albedo, emission, view } => (single(*albedo, *emission), 0, view, true),
-            SceneKind::FurnaceBox { albedo, emission, view } => (single(*albedo, *emission), 0, view, false),
+        let furnace = |albedo: &Rgb, le: &Rgb| Enclosure::furnace(Material { albedo: *albedo, le: *le });
+        let whole = |albedo: &Rgb, emission: &Rgb| {
+            Enclosure::sphere(&[Patch { fraction: 1.0, albedo: *albedo, emission: *emission }])
+        };
+        let (enclosure, looks_at, view) = match scene {
+            SceneKind::Furnace { albedo, emission, view } => (whole(albedo, emission), 0, view),
+            SceneKind::FurnaceBox { albedo, emission, view } => (furnace(albedo, emission), 0, view),
             SceneKind::IntegratingSphere { patches, looks_at, view } => {
-                (patches.clone(), *looks_at, view, true)
+                (Enclosure::sphere(patches), *looks_at, view)
             }
             SceneKind::CornellBox { .. } | SceneKind::CornellEmpty { .. } | SceneKind::Custom { .. } => {
                 return None;
             }
         };
-        let (start, response) = match view {
-            View::Probe => (Some(looks_at), 1.0),
-            View::Irradiance => (None, PI),
+        let probe = |patch| if patch == looks_at { 1.0 } else { 0.0 };
+        let (seen, response) = match view {
+            View::Probe => ((0..enclosure.patches().len()).map(probe).collect(), 1.0),
+            View::Irradiance => (enclosure.seen_from(looks_at).to_vec(), PI),
         };
-        let enclosure = Enclosure { patches };
-        Some(ClosedForm { enclosure, start, response, spherical, estimator: *estimator })
+        Some(ClosedForm { enclosure, seen, response, estimator: *estimator })
     }
 
     /// The right value, whatever the estimator makes of it.
     pub fn truth(&self, channel: usize, counted: Counted) -> f64 {
         let on = |patch| self.enclosure.radiance(patch, channel, counted);
-        let radiance = match self.start {
-            Some(patch) => on(patch),
-            None => self.enclosure.patches.iter().enumerate().map(|(i, p)| p.fraction * on(i)).sum(),
-        };
-        self.response * radiance
+        let radiance: Vec<f64> = (0..self.seen.len()).map(on).collect();
+        self.response * average(&self.seen, &radiance)
     }
 
     /// The mean of this estimator: the right value less what a clamp leaves out.
@@ -111,14 +112,8 @@ impl ClosedForm {
 
     /// Expected rays a realization, where known.
     pub fn rays(&self) -> Option<f64> {
-        if self.is_explicit() && !self.spherical {
-            return None; // a light seen edge-on costs no shadow ray
-        }
-        let rays = Walk::new(&self.enclosure, &self.estimator)?.rays()?;
-        Some(match self.start {
-            Some(patch) => rays[patch],
-            None => self.enclosure.patches.iter().zip(&rays).map(|(p, r)| p.fraction * r).sum(),
-        })
+        let rays = average(&self.seen, &Walk::new(&self.enclosure, &self.estimator)?.rays()?);
+        rays.is_finite().then_some(rays)
     }
 
     /// Index of the power-law tail of one sample; the variance is infinite at or below 2.
@@ -126,31 +121,26 @@ impl ClosedForm {
         if self.light_touches_walls() {
             return Some(1.5);
         }
-        Walk::new(&self.enclosure, &self.estimator)?.tail_index(channel)
+        let on_patches = Walk::new(&self.enclosure, &self.estimator)?.tail_index(channel);
+        let seen = on_patches.into_iter().zip(&self.seen).filter(|(_, p)| **p > 0.0);
+        seen.filter_map(|(alpha, _)| alpha).min_by(f64::total_cmp)
     }
 
     fn moments(&self, channel: usize, counted: Counted) -> Result<Central, Known> {
         if self.light_touches_walls() && counted != Counted::Only(0) {
             return Err(Known::Infinite);
         }
-        if self.is_explicit() && !self.spherical {
-            return Err(Known::Unknown);
-        }
         let walk = Walk::new(&self.enclosure, &self.estimator).ok_or(Known::Unknown)?;
-        let moments = walk.moments(channel, counted);
-        let seen = self.start.map_or_else(|| self.enclosure.average(&moments), |patch| moments[patch]);
-        Ok(seen.scaled(self.response))
-    }
-
-    fn is_explicit(&self) -> bool {
-        matches!(self.estimator, Estimator::Explicit(_))
+        let moments = walk.moments(channel, counted).ok_or(Known::Unknown)?;
+        Ok(Central::mixture(self.seen.iter().copied().zip(moments)).scaled(self.response))
     }
 
     /// Light sampled over an area that adjoins the receiver's wall has a geometry term with tail index 3/2,
     /// averaged over receivers: infinite variance in every box.
     fn light_touches_walls(&self) -> bool {
-        !self.spherical
-            && matches!(&self.estimator, Estimator::Explicit(e) if e.lights == LightSampling::Area)
+        let area = |e: &Explicit| e.lights == LightSampling::Area && e.technique == Technique::Light;
+        !self.enclosure.is_spherical()
+            && matches!(&self.estimator, Estimator::Explicit(e) if area(e))
             && self.estimator.roulette().reaches(2)
     }
 }
