@@ -1,6 +1,7 @@
 //! Reference values, always with an error: closed forms, and stored images of an independent renderer.
 
 pub mod enclosure;
+pub mod gain;
 pub mod linear;
 pub mod moments;
 pub mod optimum;
