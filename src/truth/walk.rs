@@ -109,7 +109,6 @@ impl<'a> Walk<'a> {
         match self.technique {
             Technique::Direction => 1.0,
             Technique::Light => 0.0,
-            Technique::Both(_) if pmf == 0.0 => 1.0,
             Technique::Both(Heuristic::Balance) => fraction / (fraction + pmf),
             Technique::Both(Heuristic::Power) => fraction * fraction / (fraction * fraction + pmf * pmf),
         }
