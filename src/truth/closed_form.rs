@@ -1,10 +1,11 @@
 //! What theory says of one estimator in one scene: mean, central moments and cost, per channel and per bounce.
 
 use super::Known;
-use super::enclosure::{Counted, Enclosure, Walk};
+use super::enclosure::{Counted, Enclosure, Wall, average};
 use super::gallery::{self, Series};
 use super::moments::Central;
-use crate::estimator::{Estimate, Estimator, Property, Technique};
+use super::walk::Walk;
+use crate::estimator::{Estimate, Estimator, Explicit, Property, Technique};
 use crate::scene::library::{Patch, SceneKind, View};
 use crate::scene::{Points, Rgb};
 use std::f64::consts::PI;
@@ -20,12 +21,12 @@ enum Theory {
     /// Among patches.
     Enclosure {
         enclosure: Enclosure,
-        /// The patch that a probe looks at; `None` for a plate, which sees all of them.
-        start: Option<usize>,
+        /// With which probability the first ray meets each patch: one of them for a probe, all of them for a plate.
+        seen: Vec<f64>,
         /// π for a plate, 1 for a probe.
         response: f64,
-        /// Whether next-event estimation has a constant geometry term, as on a sphere.
-        spherical: bool,
+        /// Whether emitters touch what they light.
+        touching: bool,
     },
     /// From lights to where one looks.
     Series {
@@ -40,25 +41,27 @@ enum Theory {
 impl ClosedForm {
     /// The closed forms of `estimator` in `scene`, or `None` where the scene has none.
     pub fn of(scene: &SceneKind, estimator: &Estimator) -> Option<Self> {
-        let single = |albedo: Rgb, emission: Rgb| vec![Patch { fraction: 1.0, albedo, emission }];
+        let whole = |albedo, emission| [Patch { fraction: 1.0, albedo, emission }];
         let theory = match scene {
             SceneKind::Furnace { albedo, emission, view } => {
-                enclosure(single(*albedo, *emission), 0, *view, true)
+                among(Enclosure::sphere(&whole(*albedo, *emission)), 0, *view, false)
             }
             SceneKind::FurnaceBox { albedo, emission, view } => {
-                enclosure(single(*albedo, *emission), 0, *view, false)
+                among(Enclosure::furnace(Wall { albedo: *albedo, le: *emission }), 0, *view, true)
             }
             SceneKind::IntegratingSphere { patches, looks_at, view } => {
-                enclosure(patches.clone(), *looks_at, *view, true)
+                among(Enclosure::sphere(patches), *looks_at, *view, false)
             }
-            SceneKind::Exhibit { name, parameter, .. } => {
-                let exhibit = gallery::find(name)?;
-                Theory::Series {
-                    series: (exhibit.theory)(*parameter),
-                    missed: (exhibit.missed)(*parameter, estimator),
-                    variance: (exhibit.variance)(*parameter, estimator),
+            SceneKind::Exhibit { name, parameter, .. } => match &gallery::find(name)?.theory {
+                gallery::Theory::Series { mean, missed, variance } => Theory::Series {
+                    series: mean(*parameter),
+                    missed: missed(*parameter, estimator),
+                    variance: variance(*parameter, estimator),
+                },
+                gallery::Theory::Chain { enclosure, looks_at, touching } => {
+                    among(enclosure(*parameter), *looks_at, View::Probe, *touching)
                 }
-            }
+            },
             SceneKind::CornellBox { .. }
             | SceneKind::CornellEmpty { .. }
             | SceneKind::CornellFlush { .. }
@@ -71,13 +74,10 @@ impl ClosedForm {
     pub fn truth(&self, channel: usize, counted: Counted) -> f64 {
         match &self.theory {
             Theory::Series { series, .. } => series.sum(counted)[channel],
-            Theory::Enclosure { enclosure, start, response, .. } => {
-                let on = |patch| enclosure.radiance(patch, channel, counted);
-                let radiance = match start {
-                    Some(patch) => on(*patch),
-                    None => enclosure.patches.iter().enumerate().map(|(i, p)| p.fraction * on(i)).sum(),
-                };
-                response * radiance
+            Theory::Enclosure { enclosure, seen, response, .. } => {
+                let radiance: Vec<f64> =
+                    (0..seen.len()).map(|patch| enclosure.radiance(patch, channel, counted)).collect();
+                response * average(seen, &radiance)
             }
         }
     }
@@ -135,17 +135,11 @@ impl ClosedForm {
         Some(third / (variance * variance.sqrt()))
     }
 
-    /// Expected rays a realization, where known.
+    /// Expected rays a realization, where known and finite.
     pub fn rays(&self) -> Option<f64> {
-        let Theory::Enclosure { enclosure, start, spherical, .. } = &self.theory else { return None };
-        if self.estimator.samples_lights() && !spherical {
-            return None; // a light seen edge-on costs no shadow ray
-        }
-        let rays = Walk::new(enclosure, &self.estimator)?.rays()?;
-        Some(match start {
-            Some(patch) => rays[*patch],
-            None => enclosure.patches.iter().zip(&rays).map(|(p, r)| p.fraction * r).sum(),
-        })
+        let Theory::Enclosure { enclosure, seen, .. } = &self.theory else { return None };
+        let rays = average(seen, &Walk::new(enclosure, &self.estimator)?.rays()?);
+        rays.is_finite().then_some(rays)
     }
 
     /// Index of the power-law tail of one sample; the variance is infinite at or below 2.
@@ -153,39 +147,38 @@ impl ClosedForm {
         if self.light_touches_walls() {
             return Some(1.5);
         }
-        let Theory::Enclosure { enclosure, .. } = &self.theory else { return None };
-        Walk::new(enclosure, &self.estimator)?.tail_index(channel)
+        let Theory::Enclosure { enclosure, seen, .. } = &self.theory else { return None };
+        let on_patches = Walk::new(enclosure, &self.estimator)?.tail_index(channel);
+        let seen = on_patches.into_iter().zip(seen).filter(|(_, p)| **p > 0.0);
+        seen.filter_map(|(alpha, _)| alpha).min_by(f64::total_cmp)
     }
 
     fn moments(&self, channel: usize, counted: Counted) -> Result<Central, Known> {
-        let Theory::Enclosure { enclosure, start, response, spherical } = &self.theory else {
-            return Err(Known::Unknown);
-        };
         if self.light_touches_walls() && counted != Counted::Only(0) {
             return Err(Known::Infinite);
         }
-        if self.estimator.samples_lights() && !spherical {
+        let Theory::Enclosure { enclosure, seen, response, .. } = &self.theory else {
             return Err(Known::Unknown);
-        }
+        };
         let walk = Walk::new(enclosure, &self.estimator).ok_or(Known::Unknown)?;
-        let moments = walk.moments(channel, counted);
-        let seen = start.map_or_else(|| enclosure.average(&moments), |patch| moments[patch]);
-        Ok(seen.scaled(*response))
+        let moments = walk.moments(channel, counted).ok_or(Known::Unknown)?;
+        Ok(Central::mixture(seen.iter().copied().zip(moments)).scaled(*response))
     }
 
     /// Light sampled over an area that adjoins the receiver's wall has a geometry term with tail index 3/2,
     /// averaged over receivers: infinite variance in every box.
     fn light_touches_walls(&self) -> bool {
-        let Theory::Enclosure { spherical: false, .. } = self.theory else { return false };
-        matches!(&self.estimator, Estimator::Explicit(e) if e.technique == Technique::Light && e.lights.points == Points::Area)
-            && self.estimator.roulette().reaches(2)
+        let Theory::Enclosure { touching: true, .. } = self.theory else { return false };
+        let area = |e: &Explicit| e.lights.points == Points::Area && e.technique == Technique::Light;
+        matches!(&self.estimator, Estimator::Explicit(e) if area(e)) && self.estimator.roulette().reaches(2)
     }
 }
 
-fn enclosure(patches: Vec<Patch>, looks_at: usize, view: View, spherical: bool) -> Theory {
-    let (start, response) = match view {
-        View::Probe => (Some(looks_at), 1.0),
-        View::Irradiance => (None, PI),
+fn among(enclosure: Enclosure, looks_at: usize, view: View, touching: bool) -> Theory {
+    let probe = |patch| if patch == looks_at { 1.0 } else { 0.0 };
+    let (seen, response) = match view {
+        View::Probe => ((0..enclosure.patches().len()).map(probe).collect(), 1.0),
+        View::Irradiance => (enclosure.seen_from(looks_at).to_vec(), PI),
     };
-    Theory::Enclosure { enclosure: Enclosure { patches }, start, response, spherical }
+    Theory::Enclosure { enclosure, seen, response, touching }
 }

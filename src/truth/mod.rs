@@ -3,18 +3,22 @@
 mod closed_form;
 pub mod direct;
 pub mod enclosure;
+pub mod gain;
 pub mod gallery;
+pub mod linear;
 pub mod moments;
 pub mod optics;
 pub mod optimum;
 pub mod quadrature;
 pub mod radiosity;
 pub mod reference;
+pub mod walk;
 
 pub use closed_form::ClosedForm;
-pub use enclosure::{Counted, Enclosure};
+pub use enclosure::{Counted, Enclosure, Wall};
 pub use optimum::{Optimum, best_constant_q};
 pub use reference::Reference;
+pub use walk::Walk;
 
 /// What theory says of a central moment.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,6 +17,9 @@ pub fn power(x: f64, n: u32) -> f64 {
     (0..n).fold(1.0, |product, _| product * x)
 }
 
+/// What a sum of probabilities lacks to 1 is rounding if it is less than this.
+pub const LOST: f64 = 1e-12;
+
 /// Variances below this fraction of the squared mean are rounding: mixtures of equal constants do not come out at zero.
 const ROUNDING: f64 = 1e-26;
 
@@ -56,7 +59,7 @@ impl Central {
 
     /// The same with all moments from `order` on infinite.
     pub fn finite_below(self, order: usize) -> Self {
-        Central { finite: order - 1, ..self }
+        Central { finite: self.finite.min(order - 1), ..self }
     }
 
     /// The sum with an independent variable.
@@ -101,8 +104,11 @@ impl Central {
         Central { mean: x.mean * u.mean, central, finite: x.finite.min(u.finite) }
     }
 
-    /// One of several variables, each chosen with its probability.
+    /// One of several variables, each chosen with its probability; zero with what these lack to 1.
     pub fn mixture(parts: impl Iterator<Item = (f64, Central)> + Clone) -> Self {
+        let left: f64 = parts.clone().fold(1.0, |left, (p, _)| left - p);
+        let zero = (left > LOST).then_some((left, Central::constant(0.0)));
+        let parts = parts.filter(|(p, _)| *p > 0.0).chain(zero);
         let mean = parts.clone().map(|(p, part)| p * part.mean).sum();
         let mut mixed = Central::constant(mean);
         for (p, part) in parts {

@@ -1,7 +1,7 @@
 //! A clear plate between two lights: part of each is seen, by all reflections between the faces.
 
 use super::props::{LE, Place, UPRIGHT, light, of, setting};
-use super::{Exhibit, Parameter, Series, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
 use crate::scene::{Bsdf, Rgb, Sensor};
 use crate::truth::optics::interface::Slab;
 
@@ -28,17 +28,19 @@ pub const EXHIBIT: Exhibit = Exhibit {
             Sensor::Probe { origin: place.at(0.5, 0.2, 1.0), direction: place.along(0.36, 0.48, -0.8) },
         )
     },
-    theory: |ior| {
-        let r = Slab::new(0.8, ior).interface;
-        let passed = (1.0 - r) * (1.0 - r);
-        let mut bounces = vec![Rgb::ZERO, LE * r];
-        let mut inside = 1.0; // R^j after j reflections within
-        for j in 0..TERMS {
-            bounces.push(if j % 2 == 0 { BEHIND } else { LE } * (passed * inside));
-            inside *= r;
-        }
-        Series::finite(bounces)
+    theory: Theory::Series {
+        mean: |ior| {
+            let r = Slab::new(0.8, ior).interface;
+            let passed = (1.0 - r) * (1.0 - r);
+            let mut bounces = vec![Rgb::ZERO, LE * r];
+            let mut inside = 1.0; // R^j after j reflections within
+            for j in 0..TERMS {
+                bounces.push(if j % 2 == 0 { BEHIND } else { LE } * (passed * inside));
+                inside *= r;
+            }
+            Series::finite(bounces)
+        },
+        missed: nothing_missed,
+        variance: |_, _| None,
     },
-    missed: nothing_missed,
-    variance: |_, _| None,
 };

@@ -1,7 +1,7 @@
 //! A disk light straight above a point of the floor: every technique's variance has a closed form.
 
 use super::props::{FLOOR, LE, TILTED, light, setting};
-use super::{Exhibit, Parameter, Series, by_chance, nothing_missed, one_sample};
+use super::{Exhibit, Parameter, Series, Theory, by_chance, nothing_missed, one_sample};
 use crate::estimator::{Estimator, Heuristic, Technique};
 use crate::scene::{Directions, Rgb};
 use crate::truth::direct::direct_variance::{self as variance, CoaxialDisk, Sampled};
@@ -17,28 +17,32 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let disk = TILTED.disk([0.0, 0.0, HEIGHT], radius);
         setting(vec![TILTED.floor(), light(disk, LE)], TILTED.look_at_floor())
     },
-    theory: |radius| Series::finite(vec![Rgb::ZERO, FLOOR * LE * disk(radius).mean()]),
-    missed: nothing_missed,
-    variance: |radius, estimator| {
-        let disk = disk(radius);
-        let scale = FLOOR * FLOOR * LE * LE;
-        let known = match *estimator {
-            Estimator::Explicit(e) if e.technique == Technique::Light => disk.explicit(Sampled::Area),
-            Estimator::Explicit(e) if one_sample(&e.roulette) && e.directions == Directions::Cosine => {
-                match e.technique {
-                    Technique::Both(Heuristic::Balance) => {
-                        disk.mis(Sampled::Area, variance::Heuristic::Balance)
+    theory: Theory::Series {
+        mean: |radius| Series::finite(vec![Rgb::ZERO, FLOOR * LE * disk(radius).mean()]),
+        missed: nothing_missed,
+        variance: |radius, estimator| {
+            let disk = disk(radius);
+            let scale = FLOOR * FLOOR * LE * LE;
+            let known = match *estimator {
+                Estimator::Explicit(e) if e.technique == Technique::Light => disk.explicit(Sampled::Area),
+                Estimator::Explicit(e) if one_sample(&e.roulette) && e.directions == Directions::Cosine => {
+                    match e.technique {
+                        Technique::Both(Heuristic::Balance) => {
+                            disk.mis(Sampled::Area, variance::Heuristic::Balance)
+                        }
+                        Technique::Both(Heuristic::Power) => {
+                            disk.mis(Sampled::Area, variance::Heuristic::Power)
+                        }
+                        _ => disk.implicit_cosine(),
                     }
-                    Technique::Both(Heuristic::Power) => disk.mis(Sampled::Area, variance::Heuristic::Power),
-                    _ => disk.implicit_cosine(),
                 }
-            }
-            Estimator::Implicit(e) if one_sample(&e.roulette) && e.directions == Directions::Uniform => {
-                disk.implicit_uniform()
-            }
-            _ => return by_chance(estimator, disk.mean(), FLOOR, LE),
-        };
-        Some(scale * known)
+                Estimator::Implicit(e) if one_sample(&e.roulette) && e.directions == Directions::Uniform => {
+                    disk.implicit_uniform()
+                }
+                _ => return by_chance(estimator, disk.mean(), FLOOR, LE),
+            };
+            Some(scale * known)
+        },
     },
 };
 

@@ -1,7 +1,7 @@
 //! A clear ball under a uniform sky: all paths bring the same radiance, so that the ball cannot be seen.
 
 use super::props::{LE, TILTED, of, under};
-use super::{Exhibit, Parameter, Series, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
 use crate::estimator::Rule;
 use crate::scene::{Bsdf, Rgb, Sensor, Sky};
 use crate::truth::optics::interface::dielectric;
@@ -21,15 +21,17 @@ pub const EXHIBIT: Exhibit = Exhibit {
             Sensor::Probe { origin: TILTED.at(0.3, 0.0, 2.0), direction: TILTED.along(0.0, 0.0, -1.0) };
         under(Sky::Uniform { radiance: LE }, vec![ball], sensor)
     },
-    theory: |ior| {
-        let r = dielectric(COS, ior);
-        let first = vec![Rgb::ZERO, LE * r, LE * ((1.0 - r) * (1.0 - r))];
-        Series { first, ratio: Rgb::splat(r) }
-    },
-    missed: nothing_missed,
-    // a clamp cuts off what circles in the ball for long
-    variance: |_, estimator| {
-        let roulette = estimator.roulette();
-        (roulette.rule == Rule::None && roulette.reaches(1000)).then_some(Rgb::ZERO)
+    theory: Theory::Series {
+        mean: |ior| {
+            let r = dielectric(COS, ior);
+            let first = vec![Rgb::ZERO, LE * r, LE * ((1.0 - r) * (1.0 - r))];
+            Series { first, ratio: Rgb::splat(r) }
+        },
+        missed: nothing_missed,
+        // a clamp cuts off what circles in the ball for long
+        variance: |_, estimator| {
+            let roulette = estimator.roulette();
+            (roulette.rule == Rule::None && roulette.reaches(1000)).then_some(Rgb::ZERO)
+        },
     },
 };

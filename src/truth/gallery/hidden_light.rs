@@ -1,7 +1,7 @@
 //! A rectangle of light, part of which a plate hides: visibility, which no furnace tests.
 
 use super::props::{FLOOR, LE, TILTED, light, matte, setting};
-use super::{Exhibit, Parameter, Series, by_chance, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, by_chance, nothing_missed};
 use crate::scene::{Rgb, Shape};
 use crate::truth::direct::visibility::{Blocker, visible_fraction};
 
@@ -14,9 +14,11 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let plate = matte(plate(edge), Rgb::ZERO);
         setting(vec![TILTED.floor(), light(lamp(), LE), plate], TILTED.look_at_floor())
     },
-    theory: |edge| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(edge)]),
-    missed: nothing_missed,
-    variance: |edge, estimator| by_chance(estimator, form_factor(edge), FLOOR, LE),
+    theory: Theory::Series {
+        mean: |edge| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(edge)]),
+        missed: nothing_missed,
+        variance: |edge, estimator| by_chance(estimator, form_factor(edge), FLOOR, LE),
+    },
 };
 
 fn lamp() -> Shape {

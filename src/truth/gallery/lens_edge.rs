@@ -1,7 +1,7 @@
 //! The edge of a light, out of focus: a thin lens blurs it, and a pixel averages that.
 
 use super::props::{DISTANCE, Frame, LE, half_plane};
-use super::{Exhibit, Parameter, Series, covered, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, covered, nothing_missed};
 use crate::scene::camera::Lens;
 use crate::truth::optics::exposure::{self, edge_through_lens_and_pixel};
 
@@ -18,9 +18,11 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let frame = Frame { lens: Some(Lens { radius: APERTURE, focus }) };
         frame.shows(half_plane([1.0, 0.0], EDGE * frame.pixel()))
     },
-    theory: |focus| Series::finite(vec![LE * coverage(focus)]),
-    missed: nothing_missed,
-    variance: |focus, _| Some(covered(LE, coverage(focus))),
+    theory: Theory::Series {
+        mean: |focus| Series::finite(vec![LE * coverage(focus)]),
+        missed: nothing_missed,
+        variance: |focus, _| Some(covered(LE, coverage(focus))),
+    },
 };
 
 fn coverage(focus: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::mirror_light::{beside_mirror, wall};
 use super::props::{FLOOR, LE};
-use super::{Exhibit, Parameter, Series, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
 use crate::scene::{Bsdf, Rgb};
 use crate::truth::optics::interface::conductor;
 
@@ -15,11 +15,13 @@ pub const EXHIBIT: Exhibit = Exhibit {
     about: "A floor's point under a disk light and beside a metal wall of index n + i `k` (Fresnel)",
     parameter: Parameter { name: "k", usual: 2.4, range: 0.1..=10.0 },
     setting: |k| beside_mirror(Bsdf::Conductor { eta: ETA, k: Rgb::splat(k) }),
-    theory: |k| {
-        let image = |c: usize| wall().weighted_image(|cos| conductor(cos, ETA[c], k)).value;
-        let image = Rgb::new(image(0), image(1), image(2));
-        Series::finite(vec![Rgb::ZERO, FLOOR * LE * wall().direct(), FLOOR * LE * image])
+    theory: Theory::Series {
+        mean: |k| {
+            let image = |c: usize| wall().weighted_image(|cos| conductor(cos, ETA[c], k)).value;
+            let image = Rgb::new(image(0), image(1), image(2));
+            Series::finite(vec![Rgb::ZERO, FLOOR * LE * wall().direct(), FLOOR * LE * image])
+        },
+        missed: nothing_missed,
+        variance: |_, _| None,
     },
-    missed: nothing_missed,
-    variance: |_, _| None,
 };

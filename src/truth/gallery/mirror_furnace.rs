@@ -1,7 +1,7 @@
 //! A closed sphere of glowing mirrors: radiance as in a matte furnace, whatever the directions.
 
 use super::props::{LE, TILTED, setting};
-use super::{Exhibit, Parameter, Series, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
 use crate::estimator::Rule;
 use crate::scene::library::Primitive;
 use crate::scene::{Bsdf, Material, Rgb, Sensor};
@@ -20,17 +20,19 @@ pub const EXHIBIT: Exhibit = Exhibit {
             Sensor::Probe { origin: TILTED.at(0.3, -0.2, 0.4), direction: TILTED.along(0.48, 0.6, -0.64) };
         setting(vec![wall], sensor)
     },
-    theory: |reflectance| Series { first: vec![LE], ratio: Rgb::splat(reflectance) },
-    missed: nothing_missed,
-    variance: |r, estimator| {
-        let roulette = estimator.roulette();
-        let m = LE / (1.0 - r);
-        match roulette.rule {
-            Rule::None => Some(Rgb::ZERO),
-            Rule::Constant { q } if roulette.from == 0 && roulette.clamp.is_none() && q > r * r => {
-                Some(m * m * (r * r * (1.0 - q) / (q - r * r)))
+    theory: Theory::Series {
+        mean: |reflectance| Series { first: vec![LE], ratio: Rgb::splat(reflectance) },
+        missed: nothing_missed,
+        variance: |r, estimator| {
+            let roulette = estimator.roulette();
+            let m = LE / (1.0 - r);
+            match roulette.rule {
+                Rule::None => Some(Rgb::ZERO),
+                Rule::Constant { q } if roulette.from == 0 && roulette.clamp.is_none() && q > r * r => {
+                    Some(m * m * (r * r * (1.0 - q) / (q - r * r)))
+                }
+                _ => None,
             }
-            _ => None,
-        }
+        },
     },
 };

@@ -2,7 +2,7 @@
 //! floor, which sampling the light cannot find.
 
 use super::props::{FLOOR, LE, TILTED, light, of, setting};
-use super::{Exhibit, Parameter, Series, cosine_without_roulette, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, cosine_without_roulette, nothing_missed};
 use crate::scene::library::Setting;
 use crate::scene::{Bsdf, Rgb};
 use crate::truth::optics::mirror::{MirrorWall, Shape};
@@ -13,14 +13,20 @@ pub const EXHIBIT: Exhibit = Exhibit {
     about: "A floor's point under a disk light and beside a mirror: albedo Le (F + r F of the image)",
     parameter: Parameter { name: "reflectance", usual: 0.7, range: 0.01..=1.0 },
     setting: |reflectance| beside_mirror(Bsdf::Mirror { reflectance: Rgb::splat(reflectance) }),
-    theory: |reflectance| {
-        let wall = wall();
-        Series::finite(vec![Rgb::ZERO, FLOOR * LE * wall.direct(), FLOOR * LE * (reflectance * wall.image())])
-    },
-    missed: nothing_missed,
-    variance: |reflectance, estimator| {
-        let two_bounces = cosine_without_roulette(estimator) && estimator.roulette().reaches(2);
-        two_bounces.then(|| FLOOR * FLOOR * LE * LE * wall().implicit_variance(reflectance))
+    theory: Theory::Series {
+        mean: |reflectance| {
+            let wall = wall();
+            Series::finite(vec![
+                Rgb::ZERO,
+                FLOOR * LE * wall.direct(),
+                FLOOR * LE * (reflectance * wall.image()),
+            ])
+        },
+        missed: nothing_missed,
+        variance: |reflectance, estimator| {
+            let two_bounces = cosine_without_roulette(estimator) && estimator.roulette().reaches(2);
+            two_bounces.then(|| FLOOR * FLOOR * LE * LE * wall().implicit_variance(reflectance))
+        },
     },
 };
 

@@ -4,7 +4,9 @@
 //! origin: symmetry hides mistakes.
 
 mod clear_slab;
+mod concentric_spheres;
 mod disk_light;
+mod dome;
 mod glass_ball;
 mod hidden_light;
 mod lens_edge;
@@ -12,6 +14,7 @@ mod metal_light;
 mod mirror_furnace;
 mod mirror_light;
 mod moving_edge;
+mod parallel_plates;
 mod pixel_edge;
 mod point_in_sphere;
 mod point_over_plane;
@@ -25,14 +28,14 @@ mod unequal_lights;
 mod uniform_sky;
 mod water_floor;
 
-use super::Counted;
+use super::{Counted, Enclosure};
 use crate::estimator::{Estimator, Explicit, Roulette, Rule, Technique};
 use crate::scene::library::{Primitive, SceneKind, Setting};
 use crate::scene::{Directions, Rgb};
 use std::ops::RangeInclusive;
 
 /// All of them.
-pub const EXHIBITS: [&Exhibit; 20] = [
+pub const EXHIBITS: [&Exhibit; 23] = [
     &disk_light::EXHIBIT,
     &polygon_light::EXHIBIT,
     &sphere_light::EXHIBIT,
@@ -42,6 +45,9 @@ pub const EXHIBITS: [&Exhibit; 20] = [
     &point_in_sphere::EXHIBIT,
     &uniform_sky::EXHIBIT,
     &sky_over_plane::EXHIBIT,
+    &concentric_spheres::EXHIBIT,
+    &parallel_plates::EXHIBIT,
+    &dome::EXHIBIT,
     &mirror_light::EXHIBIT,
     &metal_light::EXHIBIT,
     &mirror_furnace::EXHIBIT,
@@ -66,11 +72,29 @@ pub struct Exhibit {
     /// What there is.
     pub setting: fn(f64) -> Setting,
     /// What light does there.
-    pub theory: fn(f64) -> Series,
-    /// The part of it that this estimator has no way to find.
-    pub missed: fn(f64, &Estimator) -> Option<Series>,
-    /// Variance of one sample, where it is known.
-    pub variance: fn(f64, &Estimator) -> Option<Rgb>,
+    pub theory: Theory,
+}
+
+/// How light is known, as functions of the parameter.
+pub enum Theory {
+    /// Bounce by bounce.
+    Series {
+        /// The measured quantity.
+        mean: fn(f64) -> Series,
+        /// The part of it that an estimator has no way to find.
+        missed: fn(f64, &Estimator) -> Option<Series>,
+        /// Variance of one sample, where it is known.
+        variance: fn(f64, &Estimator) -> Option<Rgb>,
+    },
+    /// As a Markov chain of patches.
+    Chain {
+        /// The patches and what they see.
+        enclosure: fn(f64) -> Enclosure,
+        /// The patch that the probe looks at.
+        looks_at: usize,
+        /// Whether lights touch what they light, so that sampling them by area has no variance.
+        touching: bool,
+    },
 }
 
 /// A number that a scene depends on.

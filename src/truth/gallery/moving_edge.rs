@@ -1,7 +1,7 @@
 //! The edge of a light that moves across a pixel while the shutter is open.
 
 use super::props::{Frame, LE, TILTED, half_plane};
-use super::{Exhibit, Parameter, Series, covered, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, covered, nothing_missed};
 use crate::scene::library::Primitive;
 use crate::truth::optics::motion::edge_moving;
 
@@ -18,7 +18,9 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let edge = half_plane([1.0, 0.0], FROM * frame.pixel());
         frame.shows(Primitive { velocity: TILTED.along(way * frame.pixel(), 0.0, 0.0), ..edge })
     },
-    theory: |way| Series::finite(vec![LE * edge_moving(1.0, FROM, FROM + way)]),
-    missed: nothing_missed,
-    variance: |way, _| Some(covered(LE, edge_moving(1.0, FROM, FROM + way))),
+    theory: Theory::Series {
+        mean: |way| Series::finite(vec![LE * edge_moving(1.0, FROM, FROM + way)]),
+        missed: nothing_missed,
+        variance: |way, _| Some(covered(LE, edge_moving(1.0, FROM, FROM + way))),
+    },
 };

@@ -1,7 +1,7 @@
 //! A pixel across the slanted edge of a light: its box filter makes it the part of the pixel that the light covers.
 
 use super::props::{Frame, LE, half_plane};
-use super::{Exhibit, Parameter, Series, covered, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, covered, nothing_missed};
 use crate::truth::optics::exposure::Edge;
 
 /// One pixel on an edge.
@@ -13,9 +13,11 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let frame = Frame { lens: None };
         frame.shows(half_plane([0.8, 0.6], distance * frame.pixel()))
     },
-    theory: |distance| Series::finite(vec![LE * coverage(distance)]),
-    missed: nothing_missed,
-    variance: |distance, _| Some(covered(LE, coverage(distance))),
+    theory: Theory::Series {
+        mean: |distance| Series::finite(vec![LE * coverage(distance)]),
+        missed: nothing_missed,
+        variance: |distance, _| Some(covered(LE, coverage(distance))),
+    },
 };
 
 fn coverage(distance: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! A point light off the centre of a matte sphere: what is scattered more than once is uniform.
 
 use super::props::{TILTED, lit_by, matte};
-use super::{Exhibit, Parameter, Series, sampled_by_cosine};
+use super::{Exhibit, Parameter, Series, Theory, sampled_by_cosine};
 use crate::estimator::{Estimator, Rule};
 use crate::scene::{PointLight, Rgb, Sensor};
 use crate::truth::direct::point_light::PointInSphere;
@@ -24,16 +24,18 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let direction = TILTED.along(0.576, (1.0 - 0.576 * 0.576 - MU * MU).sqrt(), MU);
         lit_by(point, vec![wall], Sensor::Probe { origin: TILTED.at(0.0, 0.0, 0.0), direction })
     },
-    theory,
-    missed: |offset, estimator| (!estimator.samples_lights()).then(|| theory(offset)),
-    variance: |offset, estimator| {
-        let Estimator::Explicit(e) = estimator else { return None };
-        let q = match e.roulette.rule {
-            Rule::Constant { q } if sampled_by_cosine(e) && e.roulette.from == 0 => q,
-            _ => return None,
-        };
-        let finite = e.roulette.clamp.is_none() && q > ALBEDO.max_element() * ALBEDO.max_element();
-        finite.then(|| Rgb::from_array([0, 1, 2].map(|c| sphere(offset, c).explicit_variance(q))))
+    theory: Theory::Series {
+        mean: theory,
+        missed: |offset, estimator| (!estimator.samples_lights()).then(|| theory(offset)),
+        variance: |offset, estimator| {
+            let Estimator::Explicit(e) = estimator else { return None };
+            let q = match e.roulette.rule {
+                Rule::Constant { q } if sampled_by_cosine(e) && e.roulette.from == 0 => q,
+                _ => return None,
+            };
+            let finite = e.roulette.clamp.is_none() && q > ALBEDO.max_element() * ALBEDO.max_element();
+            finite.then(|| Rgb::from_array([0, 1, 2].map(|c| sphere(offset, c).explicit_variance(q))))
+        },
     },
 };
 

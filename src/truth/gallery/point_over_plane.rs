@@ -1,7 +1,7 @@
 //! A point light over a floor: one sample, no noise, and nothing for those who wait for chance.
 
 use super::props::{FLOOR, LE, TILTED, lit_by};
-use super::{Exhibit, Parameter, Series};
+use super::{Exhibit, Parameter, Series, Theory};
 use crate::scene::{PointLight, Rgb};
 use crate::truth::direct::point_light::irradiance;
 use std::f64::consts::FRAC_1_PI;
@@ -15,9 +15,11 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let point = PointLight { position: TILTED.at(0.5, 0.3, height), intensity: LE };
         lit_by(point, vec![TILTED.floor()], TILTED.look_at_floor())
     },
-    theory,
-    missed: |height, estimator| (!estimator.samples_lights()).then(|| theory(height)),
-    variance: |_, _| Some(Rgb::ZERO),
+    theory: Theory::Series {
+        mean: theory,
+        missed: |height, estimator| (!estimator.samples_lights()).then(|| theory(height)),
+        variance: |_, _| Some(Rgb::ZERO),
+    },
 };
 
 fn theory(height: f64) -> Series {

@@ -1,7 +1,7 @@
 //! A tilted triangle, partly below the horizon of the floor that it lights: Lambert's formula with clipping.
 
 use super::props::{FLOOR, LE, TILTED, light, setting};
-use super::{Exhibit, Parameter, Series, by_chance, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, by_chance, nothing_missed};
 use crate::scene::{Rgb, Shape};
 use crate::truth::direct::form_factor;
 
@@ -11,9 +11,11 @@ pub const EXHIBIT: Exhibit = Exhibit {
     about: "A floor's point beside a tilted triangle that reaches below the horizon (Lambert's formula)",
     parameter: Parameter { name: "height", usual: 0.7, range: 0.1..=10.0 },
     setting: |height| setting(vec![TILTED.floor(), light(triangle(height), LE)], TILTED.look_at_floor()),
-    theory: |height| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(height)]),
-    missed: nothing_missed,
-    variance: |height, estimator| by_chance(estimator, form_factor(height), FLOOR, LE),
+    theory: Theory::Series {
+        mean: |height| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(height)]),
+        missed: nothing_missed,
+        variance: |height, estimator| by_chance(estimator, form_factor(height), FLOOR, LE),
+    },
 };
 
 fn triangle(height: f64) -> Shape {

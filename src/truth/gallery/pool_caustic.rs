@@ -2,7 +2,7 @@
 //! the plate can find a point behind a refraction. It takes paths from the light.
 
 use super::props::{LE, UPRIGHT, lit_by, of};
-use super::{Exhibit, Parameter, Series};
+use super::{Exhibit, Parameter, Series, Theory};
 use crate::scene::{Bsdf, PointLight, Rgb, Sensor};
 use crate::truth::optics::caustic::Pool;
 
@@ -20,9 +20,11 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let (point_below, normal) = (UPRIGHT.at(0.0, 0.0, -DEPTH), UPRIGHT.along(0.0, 0.0, 1.0));
         lit_by(point, vec![water], Sensor::Irradiance { point: point_below, normal, on: None })
     },
-    theory,
-    missed: |distance, _| Some(theory(distance)),
-    variance: |_, _| Some(Rgb::ZERO),
+    theory: Theory::Series {
+        mean: theory,
+        missed: |distance, _| Some(theory(distance)),
+        variance: |_, _| Some(Rgb::ZERO),
+    },
 };
 
 fn theory(distance: f64) -> Series {

@@ -1,7 +1,7 @@
 //! A disk light that rises while the shutter is open.
 
 use super::props::{FLOOR, LE, TILTED, light, setting};
-use super::{Exhibit, Parameter, Series, by_chance, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, by_chance, nothing_missed};
 use crate::estimator::{Estimator, Technique};
 use crate::scene::Rgb;
 use crate::scene::library::Primitive;
@@ -20,19 +20,21 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let disk = Primitive { velocity: TILTED.along(0.0, 0.0, way), ..disk };
         setting(vec![TILTED.floor(), disk], TILTED.look_at_floor())
     },
-    theory: |way| Series::finite(vec![Rgb::ZERO, FLOOR * LE * disk(way).mean()]),
-    missed: nothing_missed,
-    variance: |way, estimator| {
-        let disk = disk(way);
-        match estimator {
-            Estimator::Explicit(e) if e.technique == Technique::Light => {
-                let variance = disk.explicit_second_moment() - disk.mean() * disk.mean();
-                Some(FLOOR * FLOOR * LE * LE * variance)
+    theory: Theory::Series {
+        mean: |way| Series::finite(vec![Rgb::ZERO, FLOOR * LE * disk(way).mean()]),
+        missed: nothing_missed,
+        variance: |way, estimator| {
+            let disk = disk(way);
+            match estimator {
+                Estimator::Explicit(e) if e.technique == Technique::Light => {
+                    let variance = disk.explicit_second_moment() - disk.mean() * disk.mean();
+                    Some(FLOOR * FLOOR * LE * LE * variance)
+                }
+                // samples that share a moment are not independent
+                Estimator::Recursive(_) => None,
+                _ => by_chance(estimator, disk.mean(), FLOOR, LE),
             }
-            // samples that share a moment are not independent
-            Estimator::Recursive(_) => None,
-            _ => by_chance(estimator, disk.mean(), FLOOR, LE),
-        }
+        },
     },
 };
 

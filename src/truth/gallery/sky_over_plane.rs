@@ -1,7 +1,7 @@
 //! A floor under a sky that is brightest in the zenith: radiance cos^n; n = 0 is a uniform half sky.
 
 use super::props::{FLOOR, LE, TILTED, under};
-use super::{Exhibit, Parameter, Series, cosine_without_roulette, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, cosine_without_roulette, nothing_missed};
 use crate::scene::{Rgb, Sky};
 use crate::truth::direct::form_factor::{cosine_sky, cosine_sky_variance};
 
@@ -14,10 +14,12 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let sky = Sky::Cosine { radiance: LE, exponent, up: TILTED.along(0.0, 0.0, 1.0) };
         under(sky, vec![TILTED.floor()], TILTED.look_at_floor())
     },
-    theory: |exponent| Series::finite(vec![Rgb::ZERO, FLOOR * LE * cosine_sky(exponent)]),
-    missed: nothing_missed,
-    variance: |exponent, estimator| {
-        let scale = FLOOR * FLOOR * LE * LE;
-        cosine_without_roulette(estimator).then(|| scale * cosine_sky_variance(exponent))
+    theory: Theory::Series {
+        mean: |exponent| Series::finite(vec![Rgb::ZERO, FLOOR * LE * cosine_sky(exponent)]),
+        missed: nothing_missed,
+        variance: |exponent, estimator| {
+            let scale = FLOOR * FLOOR * LE * LE;
+            cosine_without_roulette(estimator).then(|| scale * cosine_sky_variance(exponent))
+        },
     },
 };

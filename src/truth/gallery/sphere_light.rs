@@ -1,7 +1,7 @@
 //! A ball of light above the horizon, cut by it, or below it.
 
 use super::props::{FLOOR, LE, TILTED, light, setting};
-use super::{Exhibit, Parameter, Series, by_chance, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, by_chance, nothing_missed};
 use crate::scene::Rgb;
 use crate::truth::direct::form_factor;
 
@@ -16,9 +16,11 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let ball = TILTED.ball([0.7, -0.4, height], RADIUS);
         setting(vec![TILTED.floor(), light(ball, LE)], TILTED.look_at_floor())
     },
-    theory: |height| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(height)]),
-    missed: nothing_missed,
-    variance: |height, estimator| by_chance(estimator, form_factor(height), FLOOR, LE),
+    theory: Theory::Series {
+        mean: |height| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(height)]),
+        missed: nothing_missed,
+        variance: |height, estimator| by_chance(estimator, form_factor(height), FLOOR, LE),
+    },
 };
 
 fn form_factor(height: f64) -> f64 {

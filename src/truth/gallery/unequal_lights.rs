@@ -1,7 +1,7 @@
 //! Four lights that differ in shape, size, colour and distance: how one is picked must not change the sum.
 
 use super::props::{FLOOR, LE, TILTED, light, setting};
-use super::{Exhibit, Parameter, Series};
+use super::{Exhibit, Parameter, Series, Theory};
 use crate::scene::library::Setting;
 use crate::scene::{PointLight, Rgb, Shape};
 use crate::truth::direct::{form_factor, point_light};
@@ -23,19 +23,21 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let point = PointLight { position: position(), intensity: INTENSITY };
         Setting { points: vec![point], ..setting(primitives, TILTED.look_at_floor()) }
     },
-    theory: |radius| {
-        let (p, n) = (TILTED.at(0.0, 0.0, 0.0), TILTED.along(0.0, 0.0, 1.0));
-        let [_, _, rectangle] = shapes(radius);
-        let direct = COLOURS[0] * form_factor::disk_parallel(1.0, 1.1, radius)
-            + COLOURS[1] * form_factor::sphere(p, n, TILTED.at(-0.9, 0.5, 0.6), radius)
-            + COLOURS[2] * form_factor::polygon(p, n, &rectangle.corners())
-            + point();
-        Series::finite(vec![Rgb::ZERO, FLOOR * direct])
+    theory: Theory::Series {
+        mean: |radius| {
+            let (p, n) = (TILTED.at(0.0, 0.0, 0.0), TILTED.along(0.0, 0.0, 1.0));
+            let [_, _, rectangle] = shapes(radius);
+            let direct = COLOURS[0] * form_factor::disk_parallel(1.0, 1.1, radius)
+                + COLOURS[1] * form_factor::sphere(p, n, TILTED.at(-0.9, 0.5, 0.6), radius)
+                + COLOURS[2] * form_factor::polygon(p, n, &rectangle.corners())
+                + point();
+            Series::finite(vec![Rgb::ZERO, FLOOR * direct])
+        },
+        missed: |_, estimator| {
+            (!estimator.samples_lights()).then(|| Series::finite(vec![Rgb::ZERO, FLOOR * point()]))
+        },
+        variance: |_, _| None,
     },
-    missed: |_, estimator| {
-        (!estimator.samples_lights()).then(|| Series::finite(vec![Rgb::ZERO, FLOOR * point()]))
-    },
-    variance: |_, _| None,
 };
 
 fn shapes(radius: f64) -> [Shape; 3] {

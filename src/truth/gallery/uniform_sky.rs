@@ -1,7 +1,7 @@
 //! A floor under a uniform sky: albedo Le, and without noise by cosine-weighted directions.
 
 use super::props::{FLOOR, LE, TILTED, under};
-use super::{Exhibit, Parameter, Series, cosine_without_roulette, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, cosine_without_roulette, nothing_missed};
 use crate::scene::{Rgb, Sky};
 
 /// A point of a floor under a uniform sky.
@@ -12,7 +12,9 @@ pub const EXHIBIT: Exhibit = Exhibit {
     setting: |brightness| {
         under(Sky::Uniform { radiance: LE * brightness }, vec![TILTED.floor()], TILTED.look_at_floor())
     },
-    theory: |brightness| Series::finite(vec![Rgb::ZERO, FLOOR * LE * brightness]),
-    missed: nothing_missed,
-    variance: |_, estimator| cosine_without_roulette(estimator).then_some(Rgb::ZERO),
+    theory: Theory::Series {
+        mean: |brightness| Series::finite(vec![Rgb::ZERO, FLOOR * LE * brightness]),
+        missed: nothing_missed,
+        variance: |_, estimator| cosine_without_roulette(estimator).then_some(Rgb::ZERO),
+    },
 };

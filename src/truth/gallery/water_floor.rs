@@ -2,7 +2,7 @@
 //! that sampling lights finds nothing and continued rays must find all.
 
 use super::props::{FLOOR, LE, UPRIGHT, matte, of, under};
-use super::{Exhibit, Parameter, Series, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
 use crate::scene::{Bsdf, Rgb, Sky};
 use crate::truth::optics::interface::{dielectric, diffuse_external, diffuse_internal};
 
@@ -21,17 +21,19 @@ pub const EXHIBIT: Exhibit = Exhibit {
         let floor = matte(UPRIGHT.plane(-0.7, true), FLOOR);
         under(Sky::Uniform { radiance: LE }, vec![water, floor], UPRIGHT.look_at_floor())
     },
-    theory: |ior| {
-        let reflected = dielectric(COS, ior);
-        let escapes = (1.0 - diffuse_external(ior)) / (ior * ior);
-        let mut bounces = vec![Rgb::ZERO, LE * reflected, Rgb::ZERO];
-        let mut returning = LE * FLOOR * ((1.0 - reflected) * escapes);
-        for _ in 0..VISITS {
-            bounces.extend([returning, Rgb::ZERO]);
-            returning *= FLOOR * diffuse_internal(ior);
-        }
-        Series::finite(bounces)
+    theory: Theory::Series {
+        mean: |ior| {
+            let reflected = dielectric(COS, ior);
+            let escapes = (1.0 - diffuse_external(ior)) / (ior * ior);
+            let mut bounces = vec![Rgb::ZERO, LE * reflected, Rgb::ZERO];
+            let mut returning = LE * FLOOR * ((1.0 - reflected) * escapes);
+            for _ in 0..VISITS {
+                bounces.extend([returning, Rgb::ZERO]);
+                returning *= FLOOR * diffuse_internal(ior);
+            }
+            Series::finite(bounces)
+        },
+        missed: nothing_missed,
+        variance: |_, _| None,
     },
-    missed: nothing_missed,
-    variance: |_, _| None,
 };
