@@ -2,14 +2,16 @@
 
 use super::error::Error;
 use super::grid;
+use super::references::{self, NamedReference};
 use super::spec::{self, Claim, Limits, Plot, Spec};
 use crate::estimator::{BINS, Estimate, Estimator, MAX_RAYS, Property};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
 use crate::stats::student;
-use crate::truth::{ClosedForm, Counted};
+use crate::truth::{ClosedForm, Counted, Truth};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// One point of the grid.
 #[derive(Clone, Debug)]
@@ -61,6 +63,8 @@ pub struct Plan {
     pub cells: Vec<CellPlan>,
     /// Names of the swept parameters.
     pub swept: Vec<String>,
+    /// Stored images that the file names.
+    pub references: Vec<NamedReference>,
 }
 
 /// What the command line changes.
@@ -96,7 +100,8 @@ impl Plan {
         let mut spec = spec::parse(file, source)?;
         spec.seed = overrides.seed.unwrap_or(spec.seed);
         let (cells, swept) = grid::resolve(&spec, file, source)?;
-        let mut plan = Plan { name: name.to_owned(), spec, cells, swept };
+        let references = references::load(&spec, &cells, file, source)?;
+        let mut plan = Plan { name: name.to_owned(), spec, cells, swept, references };
         plan.distinct()?;
         plan.about_something()?;
         if let Some(text) = &overrides.filter {
@@ -119,6 +124,13 @@ impl Plan {
     /// A cell's termination rule and swept parameters.
     pub fn rule_label(&self, cell: &CellPlan) -> String {
         rule_label(cell, &self.swept)
+    }
+
+    /// What is right for a cell.
+    pub fn truth(&self, cell: &CellPlan) -> Truth {
+        let here = self.references.iter().filter(|r| r.scene == cell.scene_label);
+        let stored: Vec<_> = here.map(|r| Arc::clone(&r.reference)).collect();
+        Truth::of(&cell.scene, &cell.estimator, &stored)
     }
 
     /// Two cells of one name would be one row twice.

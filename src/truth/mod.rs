@@ -1,12 +1,19 @@
-//! Reference values, always with an error: closed forms, and stored images of an independent renderer.
+//! Reference values, always with an error: closed forms, stored images of an independent renderer or of our own, and
+//! which of them is used.
 
+pub mod choice;
 pub mod enclosure;
+pub mod layers;
 pub mod moments;
 pub mod optimum;
+pub mod own;
 pub mod reference;
 
+pub use choice::{Source, Truth, Value};
 pub use enclosure::{Counted, Enclosure};
+pub use layers::BadReference;
 pub use optimum::{Optimum, best_constant_q};
+pub use own::Own;
 pub use reference::Reference;
 
 use crate::estimator::{Estimate, Estimator, Property};
