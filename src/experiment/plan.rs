@@ -94,6 +94,12 @@ const BLOCK_PATHS: u64 = 4096;
 /// Blocks a cell, at least, if it has the samples.
 const MIN_BLOCKS: u64 = 64;
 
+/// The cells of an experiment file, whose text is `source`, without their samples: all that can be said of it before
+/// its references are made.
+pub fn cells(file: &Path, source: &str) -> Result<Vec<CellPlan>, Error> {
+    Ok(grid::resolve(&spec::parse(file, source)?, file, source)?.0)
+}
+
 impl Plan {
     /// Resolves the experiment `name` from the text of its file.
     pub fn new(name: &str, file: &Path, source: &str, overrides: &Overrides) -> Result<Self, Error> {

@@ -98,7 +98,7 @@ pub fn map(pixels: &Pixels, reference: &Reference) -> Vec<u8> {
         let left = x0 as f64 + centre as f64 - font::width(text, 12.0) / 2.0;
         font::write(&mut bytes, (EDGE, EDGE), (left, (y0 + top) as f64), text);
     };
-    write("R  G / B", FIELD / 2, 4);
+    write("R, G, below: B", FIELD / 2, 4);
     write("bias / standard error", FIELD / 2, 34);
     write(&format!("≤ −{FULL}"), 16, 76);
     write("0", FIELD / 2, 76);

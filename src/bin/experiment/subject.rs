@@ -5,7 +5,7 @@ use crate::files::Source;
 use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule};
 use furnace::experiment::input::Named;
 use furnace::experiment::spec::SceneSpec;
-use furnace::experiment::{Error, choices};
+use furnace::experiment::{Error, choices, plan};
 use furnace::scene::library::SceneKind;
 use furnace::scene::{Directions, LightSampling};
 use serde::Deserialize;
@@ -29,8 +29,9 @@ pub fn scene(name: &str, resolution: u32, options: &Options) -> Result<SceneKind
 }
 
 fn scene_of_file(file: &str, label: &str, options: &Options) -> Result<SceneKind, Error> {
-    let plan = Source::read(file, options)?.plan(options)?;
-    let mut found = plan.cells.iter().filter(|cell| cell.scene_label == label).map(|cell| &cell.scene);
+    let source = Source::read(file, options)?;
+    let cells = plan::cells(&source.file, &source.text)?;
+    let mut found = cells.iter().filter(|cell| cell.scene_label == label).map(|cell| &cell.scene);
     match found.next() {
         Some(first) if found.all(|other| other == first) => Ok(first.clone()),
         Some(_) => Err(Error::Refused(format!("{file} has several scenes called `{label}`"))),
