@@ -39,7 +39,7 @@ fn written_out() -> SceneKind {
 fn own(scene: &SceneKind, by: &Estimator) -> Arc<Reference> {
     let mut own = making::begin(scene, by, 1).unwrap();
     let goal = Goal { error: 0.0, most: 10_000 };
-    making::extend(&mut own, &goal, &AtomicBool::new(false), &|_| ()).unwrap();
+    making::extend(&mut own, &goal, &AtomicBool::new(false), &mut |_| ()).unwrap();
     Arc::new(own.reference().unwrap())
 }
 
@@ -70,7 +70,7 @@ fn the_order() {
     assert_eq!(source(&written_out(), &explicit, &both[..1]), Some(Source::Own));
     assert_eq!(source(&written_out(), &explicit, &[]), None);
     // the image that comes with the program stands between a user's and our own
-    let embedded = Truth::of(&cornell(), &explicit, &[by_implicit.clone()]).mean(0, Counted::All).unwrap();
+    let embedded = Truth::of(&cornell(), &explicit, &both[..1]).mean(0, Counted::All).unwrap();
     assert_eq!(embedded.source, Source::Independent);
     assert!(embedded.value < 1.0);
     let users = Truth::of(&cornell(), &explicit, &both);

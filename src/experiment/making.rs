@@ -76,7 +76,7 @@ pub fn extend(
     own: &mut Own,
     goal: &Goal,
     stop: &AtomicBool,
-    progress: &dyn Fn(&Own),
+    progress: &mut (dyn FnMut(&Own) + Send),
 ) -> Result<Ended, Error> {
     let Provenance { scene, estimator, seed, .. } = own.provenance.clone();
     let json = |value: Result<String, _>| value.expect("plain numbers and names have a JSON form");

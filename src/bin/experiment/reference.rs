@@ -8,6 +8,7 @@ use furnace::experiment::making::{self, Ended, Goal};
 use furnace::report::plots;
 use furnace::truth::Own;
 use indicatif::ProgressBar;
+use std::io::{IsTerminal, stderr};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -25,12 +26,19 @@ pub fn reference(args: &Reference, options: &Options, stop: &AtomicBool) -> Resu
 
     let before = own.provenance.samples;
     let goal = Goal { error: args.until_error, most: args.max_samples };
-    let bar = if options.quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
-    let progress = |own: &Own| {
+    let terminal = stderr().is_terminal();
+    let bar = if options.quiet || !terminal { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+    let mut told = before;
+    let mut progress = |own: &Own| {
         bar.set_message(state(own));
         bar.tick();
+        // a line for each doubling, where nobody watches a bar
+        if !options.quiet && !terminal && own.provenance.samples >= 2 * told {
+            told = own.provenance.samples;
+            eprintln!("{}", state(own));
+        }
     };
-    let ended = pool(options)?.install(|| making::extend(&mut own, &goal, stop, &progress))?;
+    let ended = pool(options)?.install(|| making::extend(&mut own, &goal, stop, &mut progress))?;
     bar.finish_and_clear();
     if own.provenance.samples > before {
         making::save(&path, &own)?;
