@@ -131,7 +131,8 @@ fn ctrl_c_keeps_what_is_finished() {
     command.arg("reference").args(args.split_whitespace()).current_dir(place);
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let mut line = String::new();
-    BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    stderr.read_line(&mut line).unwrap();
     assert!(line.contains("samples, relative standard error"), "{line}");
     assert!(fs::read(place.join("x.exr")).unwrap() == before, "the old file is whole until the end");
     assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
