@@ -28,7 +28,8 @@
 //! | implicit, explicit, recursive | light found by chance; direct light sampled; N samples at each vertex |
 //! | realization | one independent draw of the whole measurement: a path for a probe, an image pass for a camera |
 //! | block, cell | a fixed run of realizations; one point of the grid |
-//! | truth | the right value with its error, from a closed form or an independent renderer |
+//! | truth | the right value with its error: from a closed form, an independent renderer, or another kind of estimator |
+//! | reference | a stored image with standard errors |
 //! | claim, verdict | what is promised; Pass (shown equivalent), Fail (shown different), Inconclusive, Invalid |
 //! | cost, efficiency | rays a realization; 1 / (variance x cost) |
 

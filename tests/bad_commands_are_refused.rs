@@ -43,7 +43,7 @@ fn refuses(place: &TempDir, args: &str, words: &[&str]) {
 #[test]
 fn usage_errors() {
     let place = place(&[("x", GOOD)]);
-    let cases: [(&str, &[&str]); 14] = [
+    let cases: [(&str, &[&str]); 17] = [
         ("x --frob", &["unexpected argument '--frob'", "--help"]),
         ("x --sample 5", &["unexpected argument '--sample'", "'--samples'"]),
         ("x --samples", &["a value is required for '--samples <N>'"]),
@@ -56,6 +56,9 @@ fn usage_errors() {
         ("plan", &["<NAMES>"]),
         ("report", &["<NAMES>"]),
         ("render", &["<SCENE>"]),
+        ("reference", &["<SCENE>"]),
+        ("reference furnace --until-error 0", &["invalid value '0'", "it lies inside (0, 1)"]),
+        ("reference furnace --max-samples 1", &["invalid value '1'", "not in 2.."]),
         ("render cornell_box --spp 1", &["invalid value '1' for '--spp <SPP>'", "not in 2.."]),
         (
             "render cornell_box --resolution 0",
@@ -76,14 +79,21 @@ fn names_that_nothing_has() {
     // a mistake in the last name must not cost the time of the first
     refuses(&sweep, "rr_sweep banana", &["no experiment called `banana`"]);
     refuses(&sweep, "missing.toml", &["cannot read missing.toml", "No such file"]);
-    refuses(&sweep, "render kitchen", &["no scene `kitchen`", "there are cornell_box, cornell_empty"]);
+    refuses(&sweep, "render kitchen", &["no scene `kitchen`", "`cornell_box`, `cornell_empty`"]);
+    refuses(&sweep, "render furnace", &["furnace has no camera"]);
+    refuses(&sweep, "render cornell_box -o x.png", &["x.png must end in .exr"]);
+    refuses(&sweep, "reference kitchen", &["no scene `kitchen`", "`furnace`, `furnace_box`"]);
+    refuses(&sweep, "reference cornell_box -o x.png", &["x.png must end in .exr"]);
+    refuses(&sweep, "reference cornell_box --estimator bdpt", &["no estimator `bdpt`", "explicit, implicit"]);
+    refuses(&sweep, "reference experiments/rr_sweep.toml:x", &["has no scene called `x`"]);
+    refuses(&sweep, "reference none.toml:x", &["cannot read none.toml"]);
     refuses(&sweep, "render cornell_box --estimator bdpt", &["no estimator `bdpt`", "explicit, implicit"]);
     refuses(&place(&[]), "anything", &["there are none in the folder experiments/"]);
 }
 
 #[test]
 fn an_experiment_named_like_a_command() {
-    for name in ["list", "plan", "report", "render", "help"] {
+    for name in ["list", "plan", "report", "render", "reference", "help"] {
         let place = place(&[(name, GOOD)]);
         let words = format!("experiments/{name}.toml: `{name}` is a command; rename the file");
         refuses(&place, &format!("experiments/{name}.toml"), &[&words]);

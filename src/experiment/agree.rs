@@ -60,7 +60,7 @@ fn row(
 ) -> (Row, bool) {
     let mut row = Row::new(index, estimand, Some(channel), cell.cost.n, ours.mean);
     row.std_error = ours.std_error();
-    row.against(theirs.mean, theirs.std_error().unwrap_or(f64::NAN), Some(theirs.mean), "another cell");
+    row.compared_with(theirs.mean, theirs.std_error().unwrap_or(f64::NAN), "another cell");
     let rare = effective(ours).min(effective(theirs)) < MIN_EFFECTIVE;
     if rare {
         row.note = format!("fewer than {MIN_EFFECTIVE} paths get here: not judged");
@@ -69,7 +69,7 @@ fn row(
 }
 
 /// mean² / (squared standard error): the number of equal contributions that would scatter as much.
-fn effective(blocks: &Moments) -> f64 {
+pub(super) fn effective(blocks: &Moments) -> f64 {
     match blocks.std_error() {
         Some(error) if error > 0.0 => (blocks.mean / error) * (blocks.mean / error),
         _ if blocks.mean != 0.0 => f64::INFINITY,

@@ -88,6 +88,15 @@ impl Block {
         self.pass = Rgb::ZERO;
     }
 
+    /// Its pixels; a probe counts as one.
+    pub(super) fn into_pixels(self) -> Pixels {
+        if self.pixels.is_image() {
+            return self.pixels;
+        }
+        let of = |value: fn(&Moments) -> f64| vec![Rgb::from_array(self.total.map(|m| value(&m)))];
+        Pixels { mean: of(|m| m.mean), m2: of(|m| m.m2), ..self.pixels }
+    }
+
     /// Takes over the tally of all its paths.
     pub fn close(&mut self, tally: Tally) {
         self.tally = tally;
@@ -183,15 +192,21 @@ impl Cell {
 
     /// Why nothing can be concluded from this cell, if so.
     pub fn invalid(&self) -> Option<String> {
-        let complaint = |count: u64, what: &str| (count > 0).then(|| format!("{count} {what}"));
-        complaint(self.non_finite, "contributions were not finite")
-            .or_else(|| complaint(self.negative, "contributions were negative"))
-            .or_else(|| complaint(self.runaway, "walks ran away and were cut"))
+        complaint(self.non_finite, self.negative, self.runaway)
     }
 }
 
+/// What is wrong with samples of which so many were not finite or negative, or whose walks were cut.
+pub(super) fn complaint(non_finite: u64, negative: u64, runaway: u64) -> Option<String> {
+    let told = |count: u64, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    told(non_finite, "contributions were not finite")
+        .or_else(|| told(negative, "contributions were negative"))
+        .or_else(|| told(runaway, "walks ran away and were cut"))
+}
+
 impl Pixels {
-    fn merge(&mut self, other: &Pixels) {
+    /// Adds the next samples.
+    pub(super) fn merge(&mut self, other: &Pixels) {
         if self.n == 0 {
             *self = other.clone();
             return;

@@ -103,7 +103,7 @@ fn axis<S, T>(
 }
 
 /// Direct light can only be sampled where something emits.
-fn lit(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
+pub(super) fn lit(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
     match estimator {
         Estimator::Explicit(_) if scene.light_count() == 0 => Err("this scene has no light, and `explicit` \
              samples lights; give a surface an emission above 0, or use `implicit`"
@@ -113,7 +113,7 @@ fn lit(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
 }
 
 /// Every walk must end by its rule: by a clamp, or because q stays below 1.
-fn ends(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
+pub(super) fn ends(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
     let roulette = estimator.roulette();
     if roulette.clamp.is_some() || largest_q(roulette, scene) < 1.0 {
         return Ok(());

@@ -202,6 +202,20 @@ pub fn inside_unit<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     Ok(v)
 }
 
+/// A relative error in [0, 1).
+pub fn relative_error<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let v = f64::deserialize(d)?;
+    check((0.0..1.0).contains(&v), v, "a relative error lies in [0, 1)")?;
+    Ok(v)
+}
+
+/// A whole number from 1, where the key may be absent.
+pub fn optional_count<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u32>, D::Error> {
+    let v = i64::deserialize(d)?;
+    check((1..=1_000_000_000).contains(&v), v, "a whole number from 1 to 10^9")?;
+    Ok(Some(v as u32))
+}
+
 /// A probability in (0, 1].
 pub fn probability<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     let v = f64::deserialize(d)?;

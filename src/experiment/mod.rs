@@ -6,11 +6,14 @@ pub mod choices;
 pub mod error;
 mod grid;
 pub mod input;
+pub mod making;
 pub mod plan;
+pub mod references;
 pub mod row;
 pub mod run;
 pub mod spec;
 pub mod store;
+mod subject;
 pub mod verdict;
 
 pub use cell::Cell;

@@ -2,14 +2,16 @@
 
 use super::error::Error;
 use super::grid;
+use super::references::{self, NamedReference};
 use super::spec::{self, Claim, Limits, Plot, Spec};
 use crate::estimator::{BINS, Estimate, Estimator, MAX_RAYS, Property};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
 use crate::stats::student;
-use crate::truth::{ClosedForm, Counted};
+use crate::truth::{ClosedForm, Counted, Truth};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// One point of the grid.
 #[derive(Clone, Debug)]
@@ -61,6 +63,8 @@ pub struct Plan {
     pub cells: Vec<CellPlan>,
     /// Names of the swept parameters.
     pub swept: Vec<String>,
+    /// Stored images that the file names.
+    pub references: Vec<NamedReference>,
 }
 
 /// What the command line changes.
@@ -90,13 +94,20 @@ const BLOCK_PATHS: u64 = 4096;
 /// Blocks a cell, at least, if it has the samples.
 const MIN_BLOCKS: u64 = 64;
 
+/// The cells of an experiment file, whose text is `source`, without their samples: all that can be said of it before
+/// its references are made.
+pub fn cells(file: &Path, source: &str) -> Result<Vec<CellPlan>, Error> {
+    Ok(grid::resolve(&spec::parse(file, source)?, file, source)?.0)
+}
+
 impl Plan {
     /// Resolves the experiment `name` from the text of its file.
     pub fn new(name: &str, file: &Path, source: &str, overrides: &Overrides) -> Result<Self, Error> {
         let mut spec = spec::parse(file, source)?;
         spec.seed = overrides.seed.unwrap_or(spec.seed);
         let (cells, swept) = grid::resolve(&spec, file, source)?;
-        let mut plan = Plan { name: name.to_owned(), spec, cells, swept };
+        let references = references::load(&spec, &cells, file, source)?;
+        let mut plan = Plan { name: name.to_owned(), spec, cells, swept, references };
         plan.distinct()?;
         plan.about_something()?;
         if let Some(text) = &overrides.filter {
@@ -119,6 +130,13 @@ impl Plan {
     /// A cell's termination rule and swept parameters.
     pub fn rule_label(&self, cell: &CellPlan) -> String {
         rule_label(cell, &self.swept)
+    }
+
+    /// What is right for a cell.
+    pub fn truth(&self, cell: &CellPlan) -> Truth {
+        let here = self.references.iter().filter(|r| r.scene == cell.scene_label);
+        let stored: Vec<_> = here.map(|r| Arc::clone(&r.reference)).collect();
+        Truth::of(&cell.scene, &cell.estimator, &stored)
     }
 
     /// Two cells of one name would be one row twice.

@@ -1,6 +1,7 @@
 //! One row of `results.csv`: one estimand of one cell in one channel.
 
 use crate::stats::Verdict;
+use crate::truth::Value;
 use std::fmt;
 
 /// What a row measures.
@@ -46,6 +47,11 @@ impl fmt::Display for Estimand {
 }
 
 impl Estimand {
+    /// Whether it compares two cells, of which neither is the truth.
+    pub fn is_agreement(self) -> bool {
+        matches!(self, Estimand::Agree | Estimand::AgreeBounce(_))
+    }
+
     /// The bounce or tile that it is about.
     pub fn index(self) -> Option<usize> {
         match self {
@@ -76,6 +82,8 @@ pub struct Row {
     pub truth: Option<f64>,
     /// Its standard error; 0 for a closed form.
     pub truth_error: Option<f64>,
+    /// Bound on its systematic error; 0 for a closed form.
+    pub truth_bound: Option<f64>,
     /// Where the truth comes from.
     pub source: &'static str,
     /// What theory expects of this estimator, less the truth.
@@ -113,6 +121,7 @@ impl Row {
             variance: None,
             truth: None,
             truth_error: None,
+            truth_bound: None,
             source: "",
             expected_bias: None,
             bias: None,
@@ -138,12 +147,19 @@ impl Row {
     }
 
     /// States the right value and what this estimator is expected to make of it.
-    pub fn against(&mut self, truth: f64, truth_error: f64, expected: Option<f64>, source: &'static str) {
-        self.truth = Some(truth);
-        self.truth_error = Some(truth_error);
+    pub fn against(&mut self, right: &Value, expected: Option<f64>) {
+        self.compared_with(right.value, right.std_error, right.source.name());
+        self.truth_bound = Some(right.bound);
+        self.expected_bias = expected.map(|expected| expected - right.value);
+    }
+
+    /// States a value that is known no better than by measurement: that of another cell.
+    pub fn compared_with(&mut self, value: f64, error: f64, source: &'static str) {
+        self.truth = Some(value);
+        self.truth_error = Some(error);
         self.source = source;
-        self.bias = Some(self.mean - truth);
-        self.expected_bias = expected.map(|expected| expected - truth);
+        self.bias = Some(self.mean - value);
+        self.expected_bias = Some(0.0);
     }
 }
 

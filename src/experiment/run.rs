@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Paths between two looks at the stop flag; also bounds how many blocks are held at once.
-const WAVE_PATHS: u64 = 1 << 18;
+pub(super) const WAVE_PATHS: u64 = 1 << 18;
 
 /// Runs one cell on the current thread pool, `None` if `stop` was raised before its end.
 /// `progress` is told of the rays traced by each finished wave.

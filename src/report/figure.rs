@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 mod canvas;
 mod colour;
 mod data;
-mod font;
+pub(super) mod font;
 mod frame;
 mod legend;
 mod mark;

@@ -1,57 +1,23 @@
 //! Images: EXR with everything in it, PNG to look at.
 
+use super::difference::Difference;
 use crate::experiment::cell::Pixels;
-use crate::scene::Rgb;
-use crate::scene::library::SceneKind;
 use crate::truth::Reference;
-use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, SmallVec, WritableImage,
-};
-use std::path::Path;
+use crate::truth::layers::Layers;
 
-/// Channels `R G B` (mean), `variance.*` (of one sample), `bias.*` (signed, against the stored reference, tile by tile
-/// of its pixels) and `samples`, in single precision.
-pub fn write_exr(path: &Path, pixels: &Pixels, scene: &SceneKind) -> exr::error::UnitResult {
+/// The EXR file, in single precision: `R G B` (mean), `variance.*` (of one sample), `samples`; against a stored image
+/// also `bias.*` (signed, on the finest grid that both pictures have) and `bias_std_error.*`.
+pub fn exr(pixels: &Pixels, reference: Option<&Reference>) -> Result<Vec<u8>, exr::error::Error> {
     let (width, height) = (pixels.width as usize, pixels.height as usize);
-    let mut list: SmallVec<[AnyChannel<FlatSamples>; 4]> = SmallVec::new();
-    let mut add = |name: &str, values: Vec<f32>| list.push(AnyChannel::new(name, FlatSamples::F32(values)));
-    let mut add_rgb = |prefix: &str, values: &[Rgb]| {
-        for (c, letter) in ["R", "G", "B"].into_iter().enumerate() {
-            add(&format!("{prefix}{letter}"), values.iter().map(|v| v[c] as f32).collect());
-        }
-    };
-    add_rgb("", &pixels.mean);
-    add_rgb("variance.", &pixels.variance());
-    if let Some(bias) = bias(pixels, scene) {
-        add_rgb("bias.", &bias);
+    let mut layers = Layers::new(width, height);
+    layers.add_rgb("", &pixels.mean);
+    layers.add_rgb("variance.", &pixels.variance());
+    if let Some(difference) = reference.and_then(|reference| Difference::of(pixels, reference)) {
+        layers.add_rgb("bias.", &difference.spread(&difference.bias, width));
+        layers.add_rgb("bias_std_error.", &difference.spread(&difference.std_error, width));
     }
-    add("samples", vec![pixels.n as f32; width * height]);
-    // the default encoding writes tiles in the order its threads finish: other bytes at each run
-    let layer = Layer::new(
-        (width, height),
-        LayerAttributes::default(),
-        Encoding::SMALL_LOSSLESS,
-        AnyChannels::sort(list),
-    );
-    Image::from_layer(layer).write().non_parallel().to_file(path)
-}
-
-/// Mean less reference at the reference's resolution, spread over our pixels; `None` if the grids do not match.
-fn bias(pixels: &Pixels, scene: &SceneKind) -> Option<Vec<Rgb>> {
-    let reference = Reference::of(scene)?;
-    let width = pixels.width as usize;
-    let edge = width / reference.size;
-    if edge * reference.size != width || pixels.width != pixels.height {
-        return None;
-    }
-    let mut bias = vec![Rgb::ZERO; width * width];
-    for (i, &right) in reference.mean.iter().enumerate() {
-        let (x0, y0) = (i % reference.size * edge, i / reference.size * edge);
-        let inside = || (y0..y0 + edge).flat_map(move |y| (x0..x0 + edge).map(move |x| y * width + x));
-        let mean = inside().map(|j| pixels.mean[j]).sum::<Rgb>() / (edge * edge) as f64;
-        inside().for_each(|j| bias[j] = mean - right);
-    }
-    Some(bias)
+    layers.add("samples", vec![pixels.n as f32; width * height]);
+    layers.bytes()
 }
 
 /// An 8-bit picture for the screen: scaled by `exposure`, clipped, encoded as sRGB, enlarged to at least 256 pixels.
@@ -65,12 +31,17 @@ pub fn png(pixels: &Pixels, exposure: f64) -> Vec<u8> {
             bytes.extend(radiance.to_array().map(srgb));
         }
     }
+    encode(width, height, &bytes)
+}
+
+/// The file of an 8-bit RGB picture.
+pub(super) fn encode(width: u32, height: u32, bytes: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header().expect("a Vec takes all");
-    writer.write_image_data(&bytes).expect("as many bytes as pixels");
+    writer.write_image_data(bytes).expect("as many bytes as pixels");
     writer.finish().expect("a Vec takes all");
     file
 }

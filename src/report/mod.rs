@@ -2,6 +2,7 @@
 
 pub mod answer;
 mod curves;
+pub mod difference;
 pub mod figure;
 pub mod images;
 pub mod lookup;
@@ -15,6 +16,7 @@ pub use lookup::Lookup;
 
 use crate::experiment::store::Store;
 use crate::experiment::{Cell, Error, Plan, Row};
+use crate::truth::{Reference, Truth};
 use page::{Drawn, Picture};
 use std::io;
 use std::path::Path;
@@ -63,15 +65,30 @@ fn draw_images(plan: &Plan, cells: &[Option<Cell>], store: &Store) -> Result<Vec
     let mut pictures = Vec::new();
     // one exposure for all: pictures of a scene are there to be compared
     let exposure = with_images(plan, cells).map(|(_, cell)| images::exposure(&cell.pixels)).reduce(f64::min);
+    figure::font::register().map_err(|e| failed(store, &e))?;
     for (i, cell) in with_images(plan, cells) {
         let name = image_name(plan, i);
-        let path = store.path().join(format!("{name}.exr"));
-        images::write_exr(&path, &cell.pixels, &plan.cells[i].scene).map_err(|e| failed(store, &e))?;
+        let truth = plan.truth(&plan.cells[i]);
+        let exr = images::exr(&cell.pixels, truth.reference()).map_err(|e| failed(store, &e))?;
+        store.write(&format!("{name}.exr"), &exr)?;
         let png = images::png(&cell.pixels, exposure.unwrap_or(1.0));
         store.write(&format!("{name}.png"), &png)?;
-        pictures.push(Picture { label: plan.label(&plan.cells[i]), name, png });
+        let map = mapped(plan, i, &truth).map(|reference| difference::map(&cell.pixels, reference));
+        if let Some(map) = &map {
+            store.write(&format!("{name}{MAP}"), map)?;
+        }
+        pictures.push(Picture { label: plan.label(&plan.cells[i]), name, png, map });
     }
     Ok(pictures)
+}
+
+/// What follows an image's name in the name of its difference map.
+const MAP: &str = "_difference.png";
+
+/// The stored image against which a cell's image gets a difference map.
+fn mapped<'a>(plan: &Plan, cell: usize, truth: &'a Truth) -> Option<&'a Reference> {
+    let (width, height) = plan.cells[cell].scene.build().sensor.resolution();
+    truth.reference().filter(|_| width == height)
 }
 
 /// Rebuilding a report samples nothing, so the images are those of the run.
@@ -84,15 +101,16 @@ fn copy_images(
     let mut pictures = Vec::new();
     for (i, _) in with_images(plan, cells) {
         let name = image_name(plan, i);
-        let read = |file: &str| {
-            let path = folder.join(file);
-            std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))
+        let copy = |file: String| {
+            let path = folder.join(&file);
+            let bytes = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
+            store.write(&file, &bytes).map(|()| bytes)
         };
-        let exr = format!("{name}.exr");
-        store.write(&exr, &read(&exr)?)?;
-        let png = read(&format!("{name}.png"))?;
-        store.write(&format!("{name}.png"), &png)?;
-        pictures.push(Picture { label: plan.label(&plan.cells[i]), name, png });
+        copy(format!("{name}.exr"))?;
+        let png = copy(format!("{name}.png"))?;
+        let has_map = mapped(plan, i, &plan.truth(&plan.cells[i])).is_some();
+        let map = has_map.then(|| copy(format!("{name}{MAP}"))).transpose()?;
+        pictures.push(Picture { label: plan.label(&plan.cells[i]), name, png, map });
     }
     Ok(pictures)
 }

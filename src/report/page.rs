@@ -1,5 +1,6 @@
 //! `index.html`: question, answer, verdicts, figures, images and numbers in one page that needs no network.
 
+use super::difference::FULL;
 use super::figure;
 use super::lookup::Lookup;
 use super::summary::{self, Line};
@@ -28,6 +29,8 @@ pub struct Picture {
     pub name: String,
     /// The PNG.
     pub png: Vec<u8>,
+    /// The PNG of the signed difference from a stored image, if there is one.
+    pub map: Option<Vec<u8>>,
 }
 
 /// The whole page.
@@ -140,11 +143,24 @@ fn figure_block(drawn: &Drawn) -> Markup {
 }
 
 fn gallery(pictures: &[Picture]) -> Markup {
+    let data = |png: &[u8]| format!("data:image/png;base64,{}", STANDARD.encode(png));
     html! {
-        p { "Same exposure for all pictures; the EXR files hold mean, variance, bias against the reference, samples." }
+        p {
+            "Same exposure for all pictures; the EXR files hold mean, variance, samples and bias against the reference. "
+            @if pictures.iter().any(|picture| picture.map.is_some()) {
+                "The maps show the signed difference from the reference in units of its standard error, block by block: "
+                "red, green, and below them blue; white is none, blue means too dark by " (FULL) " standard errors or "
+                "more, orange too bright. Noise alone colours one block of 16,000 fully."
+            }
+        }
         div.gallery { @for picture in pictures {
             figure {
-                img src={ "data:image/png;base64," (STANDARD.encode(&picture.png)) } alt=(picture.label);
+                div {
+                    img src=(data(&picture.png)) alt=(picture.label);
+                    @if let Some(map) = &picture.map {
+                        img src=(data(map)) alt={ "signed difference of " (picture.label) " from the reference" };
+                    }
+                }
                 figcaption { (picture.label) " · " a href={ (picture.name) ".exr" } { "EXR" } }
             }
         } }
@@ -159,7 +175,7 @@ fn numbers(lookup: &Lookup<'_>, cell: usize) -> Markup {
             div.wide { table {
                 thead { tr {
                     th { "estimand" } th { "channel" } th.n { "measured" } th.n { "std. error" } th.n { "right" }
-                    th.n { "expected bias" } th.n { "bias" } th.n { "interval of the bias" } th.n { "p" }
+                    th.n { "its std. error" } th.n { "its bound" } th.n { "expected bias" } th.n { "bias" } th.n { "interval of the bias" } th.n { "p" }
                     th.n { "smallest bias found" } th { "verdict" } th { "source, note" }
                 } }
                 tbody { @for row in lookup.cell(cell) { (number_row(row)) } }
@@ -177,6 +193,7 @@ fn number_row(row: &Row) -> Markup {
         tr {
             td { (row.estimand) " " (index) } td { @if let Some(c) = row.channel { (CHANNELS[c]) } }
             td.n { (n(Some(row.mean))) } td.n { (small(row.std_error)) } td.n { (n(row.truth)) }
+            td.n { (small(row.truth_error)) } td.n { (small(row.truth_bound)) }
             td.n { (small(row.expected_bias)) } td.n { (small(row.bias)) }
             td.n { @if let Some((low, high)) = row.ci { (format!("{low:+.2e} … {high:+.2e}")) } }
             td.n { (small(row.p_value)) } td.n { (small(row.mde)) }
@@ -188,6 +205,7 @@ fn number_row(row: &Row) -> Markup {
 fn provenance(lookup: &Lookup<'_>) -> Markup {
     let plan = lookup.plan;
     html! {
+        @for r in &plan.references { p { "Reference of " (r.scene) ": " code { (r.file) } "." } }
         pre { "cargo run --bin experiment " (plan.name) " -- --seed " (plan.spec.seed) }
         p {
             "furnace " (env!("CARGO_PKG_VERSION")) ", seed " (plan.spec.seed) ". The same bytes for any number of threads. "

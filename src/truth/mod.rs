@@ -1,22 +1,30 @@
-//! Reference values, always with an error: closed forms, and stored images of an independent renderer.
+//! Reference values, always with an error: closed forms, deterministic solutions, stored images of an independent renderer
+//! or of our own, and which of them is used.
 
+pub mod choice;
 mod closed_form;
+pub mod deterministic;
 pub mod direct;
 pub mod enclosure;
 pub mod gain;
 pub mod gallery;
+pub mod layers;
 pub mod linear;
 pub mod moments;
 pub mod optics;
 pub mod optimum;
+pub mod own;
 pub mod quadrature;
 pub mod radiosity;
 pub mod reference;
 pub mod walk;
 
+pub use choice::{Source, Truth, Value};
 pub use closed_form::ClosedForm;
 pub use enclosure::{Counted, Enclosure, Wall};
+pub use layers::BadReference;
 pub use optimum::{Optimum, best_constant_q};
+pub use own::Own;
 pub use reference::Reference;
 pub use walk::Walk;
 

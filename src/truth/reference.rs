@@ -1,11 +1,12 @@
-//! Stored images of the Cornell scenes from an independent renderer, with standard errors (`references/README.md`).
+//! Stored images with standard errors: those of an independent renderer (`references/README.md`), a user's, our own.
 
+use super::layers::{BadReference, Layers, rgb_names};
+use super::own::{Own, Provenance};
 use crate::scene::Rgb;
 use crate::scene::library::SceneKind;
-use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
-use std::io::Cursor;
 
 /// Pixel means and their standard errors, row by row from the top left.
+#[derive(Clone, Debug)]
 pub struct Reference {
     /// Pixels along each edge.
     pub size: usize,
@@ -13,6 +14,12 @@ pub struct Reference {
     pub mean: Vec<Rgb>,
     /// Standard error of each mean.
     pub std_error: Vec<Rgb>,
+    /// Degrees of freedom of the standard errors.
+    pub df: f64,
+    /// Bound on the relative systematic error of a tile; image means are taken to have none.
+    pub systematic: f64,
+    /// How we made it ourselves; `None` for an independent renderer.
+    pub provenance: Option<Provenance>,
 }
 
 /// Degrees of freedom of the stored standard errors: 32 independent renderings.
@@ -34,14 +41,51 @@ pub struct Stored {
 }
 
 impl Reference {
-    /// The stored image of a scene, if there is one.
+    /// The independent renderer's image of a scene that came with the program, if there is one.
     pub fn of(scene: &SceneKind) -> Option<Self> {
         let bytes: &[u8] = match scene {
             SceneKind::CornellBox { .. } => include_bytes!("../../references/cornell_box_32x32.exr"),
             SceneKind::CornellEmpty { .. } => include_bytes!("../../references/cornell_empty_32x32.exr"),
             _ => return None,
         };
-        Some(decode(bytes).expect("the stored references are part of the program"))
+        let reference = Self::read(bytes).expect("the stored references are part of the program");
+        Some(Reference { systematic: TILE_SYSTEMATIC, ..reference })
+    }
+
+    /// Reads an EXR file: `R G B` with `std_error.*`, or with `variance.*` of one sample and `samples`, in single
+    /// precision; or a reference of our own, whose state is exact. No tile is taken to have a systematic error.
+    pub fn read(bytes: &[u8]) -> Result<Self, BadReference> {
+        let layers = Layers::read(bytes)?;
+        if layers.provenance.is_some() {
+            return Own::from_layers(&layers)?.reference();
+        }
+        let known = ["", "std_error.", "variance.", "bias.", "bias_std_error."].map(rgb_names);
+        layers.only(&[&known.concat()[..], &["samples".to_owned()]].concat())?;
+        let mean = layers.rgb("")?;
+        let (std_error, df) = if layers.any(&rgb_names("std_error.")) {
+            (layers.rgb("std_error.")?, DF)
+        } else if layers.any(&rgb_names("variance.")) {
+            let variance = layers.rgb("variance.")?;
+            let enough = |n: f64| n.is_finite() && n >= 2.0;
+            let samples = layers.checked("samples", "at least 2 samples, or there is no error", enough)?;
+            let std_error = variance.iter().zip(&samples).map(|(&v, &n)| root(v / n)).collect();
+            (std_error, samples.iter().fold(f64::INFINITY, |least, n| least.min(n - 1.0)))
+        } else {
+            return Err(BadReference::NoVariance);
+        };
+        if std_error.iter().all(|&error| error == Rgb::ZERO) {
+            return Err(BadReference::NoVariance);
+        }
+        Ok(Reference { size: layers.width, mean, std_error, df, systematic: 0.0, provenance: None })
+    }
+
+    /// Refuses a reference that cannot stand beside an image of `image` x `image` pixels, which is divided into
+    /// `tiles` x `tiles`; a probe's image is one pixel and has none.
+    pub fn fits(&self, image: usize, tiles: usize) -> Result<(), BadReference> {
+        let size = self.size;
+        let tiles = if image == 1 { 1 } else { tiles };
+        let fits = size.is_multiple_of(tiles) && (image > 1 || size == 1);
+        if fits { Ok(()) } else { Err(BadReference::Tiles { size, tiles, image }) }
     }
 
     /// Mean over the whole image.
@@ -66,32 +110,11 @@ impl Reference {
             }
         }
         let mean = sum / count;
-        let std_error = Rgb::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt()) / count;
-        Stored { mean, std_error, systematic: mean * TILE_SYSTEMATIC }
+        Stored { mean, std_error: root(variance) / count, systematic: mean * self.systematic }
     }
 }
 
-fn decode(bytes: &[u8]) -> Option<Reference> {
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes))
-        .ok()?;
-    let layer = image.layer_data;
-    let channel = |name: &str| -> Option<Vec<f64>> {
-        let found = layer.channel_data.list.iter().find(|c| c.name.to_string() == name)?;
-        match &found.sample_data {
-            FlatSamples::F32(values) => Some(values.iter().map(|&v| f64::from(v)).collect()),
-            _ => None,
-        }
-    };
-    let rgb = |prefix: &str| -> Option<Vec<Rgb>> {
-        let [r, g, b] = ["R", "G", "B"].map(|c| channel(&format!("{prefix}{c}")));
-        Some(r?.into_iter().zip(g?).zip(b?).map(|((r, g), b)| Rgb::new(r, g, b)).collect())
-    };
-    let size = layer.size.width();
-    Some(Reference { size, mean: rgb("")?, std_error: rgb("std_error.")? })
+/// Square root of each channel.
+pub(super) fn root(v: Rgb) -> Rgb {
+    Rgb::new(v.x.sqrt(), v.y.sqrt(), v.z.sqrt())
 }

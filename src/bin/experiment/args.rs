@@ -40,11 +40,17 @@ pub enum Command {
     },
     /// Renders one image, e.g. `experiment render cornell_box --estimator explicit --spp 64 -o out.exr`
     Render(Render),
+    /// Makes a stored image that estimators of other kinds can be compared with, or adds samples to it
+    ///
+    /// Name it in an experiment file: [[reference]] scene = "...", file = "...". Stopping and going on leads to the same
+    /// file as not stopping. Exit status: 0 the error is reached, 1 --max-samples came first, 130 interrupted (what is
+    /// finished is kept).
+    Reference(Reference),
 }
 
 #[derive(Args)]
 pub struct Render {
-    /// cornell_box or cornell_empty
+    /// A scene with a camera: its name, such as cornell_box, or FILE.toml:NAME
     pub scene: String,
     /// implicit or explicit
     #[arg(long, default_value = "explicit")]
@@ -58,6 +64,33 @@ pub struct Render {
     /// Where to write; a PNG preview goes beside it
     #[arg(short, long, default_value = "out.exr")]
     pub output: PathBuf,
+}
+
+#[derive(Args)]
+pub struct Reference {
+    /// Name of a scene, such as cornell_box or furnace, or FILE.toml:NAME for a scene of an experiment file
+    pub scene: String,
+    /// Relative standard error of the image's mean, worst channel, at which it is good enough
+    #[arg(long, value_name = "ERROR", default_value_t = 1e-3, value_parser = relative_error)]
+    pub until_error: f64,
+    /// Stop at so many samples (a pixel) in any case
+    #[arg(long, value_name = "N", default_value_t = 1_000_000_000_000,
+        value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000_000))]
+    pub max_samples: u64,
+    /// implicit or explicit; the reference will not judge estimators of the same kind
+    #[arg(long, default_value = "explicit")]
+    pub estimator: String,
+    /// Pixels along each edge, if the scene has a camera
+    #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub resolution: u32,
+    /// Where it is, or will be; references/own/SCENE.exr if left out
+    #[arg(short, long)]
+    pub output: Option<PathBuf>,
+}
+
+fn relative_error(text: &str) -> Result<f64, String> {
+    let error: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if error > 0.0 && error < 1.0 { Ok(error) } else { Err("it lies inside (0, 1)".to_owned()) }
 }
 
 #[derive(Args, Clone, Default)]

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Names that an experiment must not have, because they are commands.
-const COMMANDS: [&str; 5] = ["list", "plan", "report", "render", "help"];
+const COMMANDS: [&str; 6] = ["list", "plan", "report", "render", "reference", "help"];
 
 /// An experiment file with its text.
 pub struct Source {
@@ -41,8 +41,7 @@ impl Source {
         }
         let unchanged = text.clone();
         let text = options.set.iter().try_fold(text, |text, change| set(&file, &text, change))?;
-        let root = folder.and_then(|f| f.parent().map(Path::to_owned)).unwrap_or_default();
-        Ok(Source { name, file, text, unchanged, root })
+        Ok(Source { name, file, text, unchanged, root: root() })
     }
 
     /// The resolved experiment.
@@ -76,6 +75,11 @@ fn folder() -> Option<PathBuf> {
     let found = here.ancestors().map(|a| a.join("experiments")).find(|folder| folder.is_dir())?;
     // shorter messages, where the folder is right here
     Some(if found == here.join("experiments") { PathBuf::from("experiments") } else { found })
+}
+
+/// The folder that holds `experiments/`, or the present one.
+pub fn root() -> PathBuf {
+    folder().and_then(|f| f.parent().map(Path::to_owned)).unwrap_or_default()
 }
 
 /// Names of all experiments, sorted.

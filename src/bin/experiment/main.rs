@@ -3,8 +3,10 @@
 mod args;
 mod files;
 mod progress;
+mod reference;
 mod render;
 mod run;
+mod subject;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -45,5 +47,6 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
         Some(Command::Plan { names }) => run::plans(names, &cli.options),
         Some(Command::Report { names }) => run::reports(names, &cli.options),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),
+        Some(Command::Reference(reference)) => reference::reference(reference, &cli.options, stop),
     }
 }

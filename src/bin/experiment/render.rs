@@ -2,39 +2,22 @@
 
 use crate::args::{Options, Render};
 use crate::run::pool;
-use crate::{HELD, INTERRUPTED};
-use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule, Technique};
+use crate::{HELD, INTERRUPTED, subject};
 use furnace::experiment::{CellPlan, Error, run_cell};
 use furnace::report::images;
 use furnace::sampling::Address;
-use furnace::scene::library::SceneKind;
-use furnace::scene::{Directions, LightSampling};
+use furnace::truth::Truth;
 use std::sync::atomic::AtomicBool;
 
 /// Renders `args.scene` and writes an EXR with a PNG beside it.
 pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
-    if args.output.extension().is_none_or(|extension| extension != "exr") {
-        let output = args.output.display();
-        return Err(Error::Refused(format!("{output} must end in .exr; a PNG preview goes beside it")));
+    subject::must_be_exr(&args.output)?;
+    let scene = subject::scene(&args.scene, args.resolution, options)?;
+    let estimator = subject::estimator(&args.estimator)?;
+    let (width, height) = scene.build().sensor.resolution();
+    if width * height == 1 {
+        return Err(Error::Refused(format!("{} has no camera, so there is no image to render", args.scene)));
     }
-    let resolution = args.resolution;
-    let scene = match args.scene.as_str() {
-        "cornell_box" | "cornell" => SceneKind::CornellBox { resolution },
-        "cornell_empty" => SceneKind::CornellEmpty { resolution },
-        other => {
-            return Err(Error::Refused(format!("no scene `{other}`; there are cornell_box, cornell_empty")));
-        }
-    };
-    let roulette = Roulette { rule: Rule::Throughput { floor: 0.05 }, from: 5, clamp: None };
-    let (technique, lights, directions) = (Technique::Light, LightSampling::AREA, Directions::Cosine);
-    let estimator = match args.estimator.as_str() {
-        "explicit" => Estimator::Explicit(Explicit { technique, lights, directions, roulette }),
-        "implicit" => Estimator::Implicit(Implicit { directions, roulette }),
-        other => {
-            return Err(Error::Refused(format!("no estimator `{other}`; there are explicit, implicit")));
-        }
-    };
-    let pixels = u64::from(resolution) * u64::from(resolution);
     let plan = CellPlan {
         address: Address::of(&[
             "render",
@@ -49,16 +32,19 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         samples: args.spp.div_ceil(2) * 2,
         block: 2,
         rays: 0.0,
+        pixels: u64::from(width) * u64::from(height),
         scene,
         estimator,
-        pixels,
     };
     let Some(cell) = pool(options)?.install(|| run_cell(&plan, stop, &|_| ())) else {
         eprintln!("interrupted: nothing was written");
         return Ok(INTERRUPTED);
     };
-    images::write_exr(&args.output, &cell.pixels, &plan.scene)
-        .map_err(|e| Error::io("cannot write", &args.output, std::io::Error::other(e.to_string())))?;
+    let truth = Truth::of(&plan.scene, &plan.estimator, &[]);
+    let exr = images::exr(&cell.pixels, truth.reference());
+    exr.map_err(|e| std::io::Error::other(e.to_string()))
+        .and_then(|bytes| std::fs::write(&args.output, bytes))
+        .map_err(|e| Error::io("cannot write", &args.output, e))?;
     let preview = args.output.with_extension("png");
     let png = images::png(&cell.pixels, images::exposure(&cell.pixels));
     std::fs::write(&preview, png).map_err(|e| Error::io("cannot write", &preview, e))?;

@@ -14,7 +14,7 @@ pub use walk::{EstimatorSpec, RouletteSpec, TechniqueSpec};
 use super::error::Error;
 use super::input::{self, Named, Tables};
 use serde::Deserialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 /// An experiment file.
@@ -40,6 +40,9 @@ pub struct Spec {
     pub max_samples: Option<u64>,
     /// What is run: every combination within each grid.
     pub grid: Tables<Grid>,
+    /// Stored images that scenes are compared with.
+    #[serde(default)]
+    pub reference: Vec<ReferenceSpec>,
     /// What is claimed of the cells.
     #[serde(default)]
     pub claim: Vec<Claim>,
@@ -76,6 +79,23 @@ pub struct Grid {
     /// Realizations a cell of this grid, instead of the file's.
     #[serde(default, deserialize_with = "input::optional_samples")]
     pub samples: Option<u64>,
+}
+
+/// A stored image of a scene, used where theory has no closed form. It stands before the one that comes with the
+/// program; if this program made it, after that one, and for other kinds of estimators only.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceSpec {
+    /// What the scene is called in results.
+    pub scene: Spanned<String>,
+    /// An EXR file, relative to the experiment file.
+    pub file: Spanned<PathBuf>,
+    /// Bound on the relative systematic error of tiles, such as that of a renderer in single precision.
+    #[serde(default, deserialize_with = "input::relative_error")]
+    pub systematic: f64,
+    /// Degrees of freedom of standard errors that the file states; that of 32 renderings, if left out.
+    #[serde(default, deserialize_with = "input::optional_count")]
+    pub degrees_of_freedom: Option<u32>,
 }
 
 /// Reads an experiment file; `source` is its text.

@@ -1,6 +1,7 @@
 //! The font of the figures, and the width of text in it.
 
 use super::FigureError;
+use plotters::prelude::{BLACK, BitMapBackend, IntoDrawingArea};
 use plotters::style::{FontStyle, IntoFont, register_font};
 use std::sync::OnceLock;
 
@@ -20,18 +21,26 @@ pub const FAMILY: &str = "Furnace Sans, DejaVu Sans, Verdana, sans-serif";
 pub(super) const SIZE_OF_EM: f64 = 1.24;
 
 /// Makes the font known to plotters; later calls do nothing.
-pub(super) fn register() -> Result<(), FigureError> {
+pub fn register() -> Result<(), FigureError> {
     static DONE: OnceLock<bool> = OnceLock::new();
     let known = DONE.get_or_init(|| register_font(FAMILY, FontStyle::Normal, TTF).is_ok());
     if *known { Ok(()) } else { Err(FigureError::Font) }
 }
 
 /// Width of a line of text in pixels when the em is `em` pixels.
-pub(super) fn width(text: &str, em: f64) -> f64 {
+pub fn width(text: &str, em: f64) -> f64 {
     // plotters returns whole pixels: measure at 1000 pixels to the em
     let font = (FAMILY, 1000.0 * SIZE_OF_EM).into_font();
     let right = font.layout_box(text).map_or(0, |(_, (right, _))| right);
     f64::from(right) * em / 1000.0
+}
+
+/// Writes a line of black text, 12 pixels to the em, into a bitmap of this size; its top left corner is at `at`.
+pub fn write(bitmap: &mut [u8], size: (usize, usize), at: (f64, f64), text: &str) {
+    let area = BitMapBackend::with_buffer(bitmap, (size.0 as u32, size.1 as u32)).into_drawing_area();
+    let font = (FAMILY, 12.0 * SIZE_OF_EM).into_font();
+    // a label that cannot be drawn is no reason to lose the results
+    let _ = area.draw_text(text, &font.color(&BLACK), (at.0 as i32, at.1 as i32));
 }
 
 /// Height from one line of text to the next.

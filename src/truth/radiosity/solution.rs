@@ -1,6 +1,7 @@
 //! Extrapolation to the mesh width 0, and the result.
 
 use super::BOUNCES;
+use serde::{Deserialize, Serialize};
 
 /// Entries per tile and channel.
 const ENTRIES: usize = 2 * (BOUNCES + 1);
@@ -18,7 +19,7 @@ pub struct Value {
 }
 
 /// Mean radiance by tile, channel and bounce.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solution {
     /// Per tile and channel: all bounces 0..=BOUNCES, then the sums from bounce 0..=BOUNCES on [W m^-2 sr^-1].
     pub values: Vec<f64>,

@@ -1,0 +1,80 @@
+//! Stored images that an experiment file names: read and held against their scenes before anything is sampled.
+
+use super::cell::TILES;
+use super::error::Error;
+use super::plan::CellPlan;
+use super::spec::{ReferenceSpec, Spec};
+use crate::scene::library::SceneKind;
+use crate::truth::{BadReference, Reference};
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A stored image and what it is of.
+#[derive(Clone, Debug)]
+pub struct NamedReference {
+    /// Label of the scene.
+    pub scene: String,
+    /// Where it was read, as the file names it.
+    pub file: String,
+    /// The image.
+    pub reference: Arc<Reference>,
+}
+
+/// Reads all references of a file, whose text is `source`.
+pub fn load(
+    spec: &Spec,
+    cells: &[CellPlan],
+    file: &Path,
+    source: &str,
+) -> Result<Vec<NamedReference>, Error> {
+    let mut all: Vec<NamedReference> = Vec::new();
+    for written in &spec.reference {
+        let scene = scene_of(written, cells).map_err(|e| Error::at(file, source, written.scene.span(), e))?;
+        let at = |message: String| Error::at(file, source, written.file.span(), message);
+        let reference = read(written, scene, file.parent().unwrap_or(Path::new(""))).map_err(at)?;
+        let name = written.scene.get_ref().clone();
+        let independent = |r: &Reference| r.provenance.is_none();
+        let second = |r: &NamedReference| r.scene == name && independent(&r.reference);
+        if independent(&reference) && all.iter().any(second) {
+            let message = format!("`{name}` has a reference already; leave only one of them");
+            return Err(Error::at(file, source, written.scene.span(), message));
+        }
+        let file = written.file.get_ref().display().to_string();
+        all.push(NamedReference { scene: name, file, reference: Arc::new(reference) });
+    }
+    Ok(all)
+}
+
+/// The scene of a label; one image cannot be of several.
+fn scene_of<'a>(written: &ReferenceSpec, cells: &'a [CellPlan]) -> Result<&'a SceneKind, String> {
+    let name = written.scene.get_ref();
+    let mut scenes = cells.iter().filter(|cell| cell.scene_label == *name).map(|cell| &cell.scene);
+    let Some(first) = scenes.next() else {
+        let mut known: Vec<&str> = cells.iter().map(|cell| cell.scene_label.as_str()).collect();
+        known.dedup();
+        return Err(format!("no scene is called `{name}`; there are: {}", known.join(", ")));
+    };
+    match scenes.all(|scene| scene == first) {
+        true => Ok(first),
+        false => Err(format!("several scenes are called `{name}`, and one image cannot be of all of them")),
+    }
+}
+
+fn read(written: &ReferenceSpec, scene: &SceneKind, folder: &Path) -> Result<Reference, String> {
+    let path = folder.join(written.file.get_ref());
+    let bad = |why: String| format!("{} is no reference: {why}", path.display());
+    let bytes = fs::read(&path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let mut reference = Reference::read(&bytes).map_err(|e| bad(e.to_string()))?;
+    let image = scene.build().sensor.resolution().0 as usize;
+    reference.fits(image, TILES as usize).map_err(|e: BadReference| bad(e.to_string()))?;
+    reference.systematic = written.systematic;
+    match &reference.provenance {
+        Some(provenance) if provenance.scene != *scene => {
+            return Err(format!("{} was made for another scene than this one", path.display()));
+        }
+        Some(_) => {}
+        None => reference.df = written.degrees_of_freedom.map_or(reference.df, f64::from),
+    }
+    Ok(reference)
+}

@@ -1,0 +1,244 @@
+//! One finished cell: every estimand beside its truth, and what may be asked about it.
+
+use super::agree;
+use super::cell::{Cell, TILES};
+use super::plan::CellPlan;
+use super::row::{Estimand, Row};
+use super::spec::Claim;
+use super::verdict::{MIN_EFFECTIVE, Sheet};
+use crate::estimator::{BINS, Rule};
+use crate::stats::{Moments, Question, Verdict};
+use crate::truth::{Counted, Known, Source, Truth, Value};
+
+/// A finished cell and what is right for it.
+pub(super) struct Subject<'a> {
+    pub index: usize,
+    pub plan: &'a CellPlan,
+    pub cell: &'a Cell,
+    pub truth: &'a Truth,
+}
+
+/// The bounces that a bin holds.
+fn counted(bin: usize) -> Counted {
+    if bin + 1 == BINS { Counted::From(bin as u32) } else { Counted::Only(bin as u32) }
+}
+
+impl Subject<'_> {
+    fn row(&self, estimand: Estimand, channel: Option<usize>, mean: f64) -> Row {
+        Row::new(self.index, estimand, channel, self.cell.cost.n, mean)
+    }
+
+    /// Means, total and per bounce.
+    pub fn means(&self, sheet: &mut Sheet<'_>) {
+        for channel in 0..3 {
+            self.total(channel, sheet);
+            for bin in 0..BINS {
+                self.bounce(channel, bin, sheet);
+            }
+        }
+        if self.plan.pixels == 1 {
+            let share = self.cell.zeros as f64 / self.cell.cost.n as f64;
+            sheet.state(self.row(Estimand::Zeros, None, share));
+        }
+    }
+
+    /// What theory says of the variance of one realization.
+    fn known_variance(&self, channel: usize, counted: Counted) -> Known {
+        self.truth.theory().map_or(Known::Unknown, |theory| theory.central(channel, counted, 2))
+    }
+
+    fn total(&self, channel: usize, sheet: &mut Sheet<'_>) {
+        let total = &self.cell.total[channel];
+        let blocks = &self.cell.blocks[channel];
+        let mut row = self.row(Estimand::Mean, Some(channel), total.mean);
+        let variance = self.known_variance(channel, Counted::All);
+        row.rays = Some(self.cell.cost.mean);
+        row.note = self.truth.refused().unwrap_or_default().to_owned();
+        if variance == Known::Infinite {
+            let tail = self.truth.theory().and_then(|theory| theory.tail_index(channel));
+            let tail = tail.map_or_else(String::new, |alpha| format!(" (tail index {alpha:.2})"));
+            row.note = format!("infinite variance{tail}: no standard error, no interval, not judged");
+        } else {
+            row.std_error = blocks.std_error();
+            row.variance = total.variance();
+            if variance == Known::Value(0.0) {
+                row.note = "noise-free".to_owned();
+            } else {
+                row.rate(total.variance_std_error());
+            }
+        }
+        let claim = sheet.claim(Claim::unbiased);
+        let enough = self.enough(&mut row, channel);
+        if !enough && claim.is_some() {
+            row.verdict = Some(Verdict::Inconclusive);
+        }
+        let legal = enough && variance != Known::Infinite;
+        self.compare(row, blocks, Counted::All, claim.filter(|_| legal), sheet);
+    }
+
+    /// States a row beside the right mean and asks about it under a claim, where both are known.
+    fn compare(
+        &self,
+        mut row: Row,
+        blocks: &Moments,
+        counted: Counted,
+        claim: Option<(usize, f64)>,
+        sheet: &mut Sheet<'_>,
+    ) {
+        let channel = row.channel.expect("means have a colour");
+        let expected = self.truth.expected(channel, counted);
+        // margins are relative to the whole, or where that is not known to the part
+        let whole = self.truth.mean(channel, Counted::All).or(expected);
+        if let Some(right) = self.truth.mean(channel, counted) {
+            row.against(&right, expected.map(|e| e.value));
+        }
+        sheet.state(row);
+        if let (Some((claim, margin)), Some(expected), Some(whole)) = (claim, expected, whole) {
+            let noise_free = self.known_variance(channel, counted) == Known::Value(0.0);
+            let margin = margin * whole.value.abs();
+            sheet.ask(claim, Question { noise_free, margin, ..self.question(blocks, &expected) });
+        }
+    }
+
+    /// Whether the mean of these blocks is what is expected; the margin is still to be set.
+    fn question(&self, blocks: &Moments, expected: &Value) -> Question {
+        Question {
+            expected_std_error: expected.std_error,
+            expected_df: expected.df,
+            systematic: expected.bound,
+            ..Question::about(blocks, self.cell.invalid(), expected.value, 0.0)
+        }
+    }
+
+    /// Whether there are enough samples for the known skewness.
+    fn enough(&self, row: &mut Row, channel: usize) -> bool {
+        let skewness = self.truth.theory().and_then(|theory| theory.skewness(channel, Counted::All));
+        let Some(skewness) = skewness else { return true };
+        let needed = 25.0 * skewness * skewness;
+        if (self.cell.cost.n as f64) < needed {
+            row.note = format!("skewness {skewness:.0}: a t interval needs {needed:.0} samples");
+            return false;
+        }
+        true
+    }
+
+    fn bounce(&self, channel: usize, bin: usize, sheet: &mut Sheet<'_>) {
+        let blocks = &self.cell.bounces[bin][channel];
+        let counted = counted(bin);
+        let mut row = self.row(Estimand::Bounce(bin), Some(channel), blocks.mean);
+        let variance = self.known_variance(channel, counted);
+        if variance != Known::Infinite {
+            row.std_error = blocks.std_error();
+        }
+        if let Some(expected) = self.truth.expected(channel, counted) {
+            row.note = self.rare(variance, expected.value, blocks);
+        }
+        let claim = sheet.claim(Claim::unbiased).filter(|_| row.note.is_empty());
+        self.compare(row, blocks, counted, claim, sheet);
+    }
+
+    /// Why what a bounce adds cannot be judged; empty if it can.
+    fn rare(&self, variance: Known, expected: f64, blocks: &Moments) -> String {
+        let effective = match variance {
+            Known::Infinite => return "infinite variance: not judged".to_owned(),
+            Known::Value(variance) => self.cell.cost.n as f64 * expected * expected / variance,
+            Known::Unknown => agree::effective(blocks),
+        };
+        if effective < MIN_EFFECTIVE {
+            return format!("about {effective:.0} paths get here, fewer than {MIN_EFFECTIVE}: not judged");
+        }
+        String::new()
+    }
+
+    /// Variance and cost against theory.
+    pub fn spread(&self, sheet: &mut Sheet<'_>) {
+        let cost = &self.cell.cost;
+        let mut row = self.row(Estimand::Cost, None, cost.mean);
+        row.std_error = cost.std_error();
+        row.variance = cost.variance();
+        let rays = self.truth.theory().and_then(|theory| theory.rays());
+        if let Some(rays) = rays {
+            row.against(&Value::exact(rays, Source::ClosedForm), Some(rays));
+        }
+        sheet.state(row);
+        if let (Some((claim, margin)), Some(rays)) = (sheet.claim(Claim::cost), rays) {
+            let mut question = Question::about(cost, self.cell.invalid(), rays, margin * rays);
+            question.noise_free = self.plan.estimator.roulette().rule == Rule::None;
+            sheet.ask(claim, question);
+        }
+        for channel in 0..3 {
+            self.variance(channel, sheet);
+        }
+    }
+
+    fn variance(&self, channel: usize, sheet: &mut Sheet<'_>) {
+        let Some(theory) = self.truth.theory() else { return };
+        let central = |order| theory.central(channel, Counted::All, order);
+        let (Some(variance), Some(expected)) = (self.cell.total[channel].variance(), central(2).value())
+        else {
+            return; // the row of the mean says why
+        };
+        let mut row = self.row(Estimand::Variance, Some(channel), variance);
+        row.against(&Value::exact(expected, Source::ClosedForm), Some(expected));
+        let n = self.cell.cost.n as f64;
+        let fourth = central(4);
+        let error =
+            fourth.value().map(|mu4| ((mu4 - expected * expected * (n - 3.0) / (n - 1.0)) / n).sqrt());
+        row.std_error = error;
+        if fourth == Known::Infinite {
+            row.note = "infinite fourth moment: the variance has no interval, not judged".to_owned();
+        }
+        sheet.state(row);
+        let claim = sheet.claim(Claim::variance);
+        if let (Some((claim, margin)), Some(std_error), true) = (claim, error, expected > 0.0) {
+            let question = Question::about(&self.cell.total[channel], self.cell.invalid(), expected, 0.0);
+            let (df, margin) = (f64::INFINITY, margin * expected);
+            sheet.ask(claim, Question { mean: variance, std_error, df, margin, ..question });
+        }
+    }
+
+    /// Tiles and the variance of pixels.
+    pub fn image(&self, sheet: &mut Sheet<'_>) {
+        let variance = &self.cell.pixel_variance;
+        if variance[0].n == 0 {
+            return;
+        }
+        let rays = self.cell.cost.mean / self.plan.pixels as f64;
+        for (channel, moments) in variance.iter().enumerate() {
+            let mut row = self.row(Estimand::PixelVariance, Some(channel), moments.mean);
+            row.std_error = moments.std_error();
+            row.variance = Some(moments.mean);
+            row.rays = Some(rays);
+            row.rate(moments.std_error());
+            sheet.state(row);
+            let mut row =
+                self.row(Estimand::MedianPixelVariance, Some(channel), self.cell.median_variance[channel]);
+            row.variance = Some(row.mean);
+            row.rays = Some(rays);
+            row.rate(None);
+            sheet.state(row);
+        }
+        (0..self.cell.tiles.len()).for_each(|tile| self.tile(tile, sheet));
+    }
+
+    fn tile(&self, tile: usize, sheet: &mut Sheet<'_>) {
+        let tiles = TILES as usize;
+        let claim = sheet.claim(Claim::tiles).filter(|_| self.plan.is_unbiased());
+        for channel in 0..3 {
+            let image = self.truth.mean(channel, Counted::All);
+            let right = self.truth.tile(tile % tiles, tile / tiles, tiles, channel);
+            let (Some(image), Some(right)) = (image, right) else { return };
+            let measured = self.cell.tiles[tile][channel];
+            let mut row = self.row(Estimand::Tile(tile), Some(channel), measured.mean);
+            row.std_error = Some(measured.std_error);
+            row.against(&right, self.plan.is_unbiased().then_some(right.value));
+            sheet.state(row);
+            if let Some((claim, margin)) = claim {
+                let margin = margin * right.value.max(image.value);
+                let question = self.question(&self.cell.blocks[channel], &right);
+                let (mean, std_error) = (measured.mean, measured.std_error);
+                sheet.ask(claim, Question { mean, std_error, margin, ..question });
+            }
+        }
+    }
+}
