@@ -186,14 +186,16 @@ impl Lights {
             Emitter::Sky(sky) => {
                 let wi = sky.sample(v);
                 let pdf = PdfW(pmf * sky.pdf(wi).0);
-                Some(LightSample {
+                let sample = LightSample {
                     to_light: wi * FAR,
                     distance: FAR,
                     le: sky.radiance(wi),
                     weight: 1.0 / pdf.0,
                     pdf: Some(pdf),
                     surface: SKY,
-                })
+                };
+                // rounding may carry a direction below the horizon
+                (pdf.0 > 0.0).then_some(sample)
             }
         }
     }
