@@ -138,9 +138,9 @@ fn open_air() -> Scene {
         ),
         rectangle(
             at(0.8, 1.0, 0.3),
-            0.2 * at(0.8, 0.0, 0.6),
-            0.2 * at(-0.6, 0.0, 0.8),
-            Material::lambert(Rgb::ZERO, at(4.0, 9.0, 12.0)),
+            0.28 * at(0.8, 0.0, 0.6),
+            0.28 * at(-0.6, 0.0, 0.8),
+            Material::lambert(Rgb::ZERO, at(2.0, 4.5, 6.0)),
         ),
         ball(at(0.2, 0.3, -0.3), 0.3, grey(Rgb::new(0.4, 0.8, 0.7))),
     ];
