@@ -192,9 +192,8 @@ fn cell(scene: &Scene, name: &str, estimator: &Estimator, passes: u64) -> Cell {
 fn all_pairs_agree(cells: &[(String, u32, Cell)]) {
     for (i, (one, last, a)) in cells.iter().enumerate() {
         for bounce in 0..BINS {
-            let bins = &a.bounces[bounce];
-            for c in 0..3 {
-                let (mean, error) = (bins[c].mean, bins[c].std_error().unwrap());
+            for (c, bin) in a.bounces[bounce].iter().enumerate() {
+                let (mean, error) = (bin.mean, bin.std_error().unwrap());
                 if bounce > *last as usize {
                     assert_eq!((mean, error), (0.0, 0.0), "{one}: bounce {bounce} is beyond the clamp");
                     continue;
