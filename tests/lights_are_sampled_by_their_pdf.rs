@@ -1,5 +1,5 @@
 //! Promise: a sampled point on an emitter comes with the density of its direction, and next-event estimation gives the
-//! irradiance that closed forms give, for every shape of emitter and both ways of sampling it.
+//! irradiance that closed forms give, for every shape of emitter, points included, and all ways of sampling it.
 //!
 //! Irradiances are means of 2^19 samples, held to SIGMAS standard errors: false alarm probability below 1e-9 for the
 //! file. The interval reaches at most 5 % to each side (spheres cut by the horizon and sampled by area; 0.1 % to 2 %
@@ -9,7 +9,10 @@
 use furnace::estimator::{Ctx, Tally};
 use furnace::sampling::Address;
 use furnace::scene::geometry::{Disk, NOWHERE, Rectangle, SpherePatch, Triangle};
-use furnace::scene::{LightSampling, Material, Ray, Rgb, Scene, Sensor, Shape, Start, Surface};
+use furnace::scene::sky::SKY;
+use furnace::scene::{
+    LightSampling, Material, Pick, PointLight, Ray, Rgb, Scene, Sensor, Shape, Sky, Start, Surface,
+};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -207,5 +210,103 @@ fn backs_are_dark() {
         let scene = scene(&[(shape, Rgb::ONE)], DVec3::Z);
         let dark = |how| scene.sample_light(how, (eye, 0.0), 0.5, (0.4, 0.7)).is_none();
         assert!(WAYS.into_iter().all(dark), "{shape:?}");
+    }
+}
+
+const UNIFORM: LightSampling = LightSampling { pick: Pick::Uniform, ..LightSampling::AREA };
+
+/// How many of equally spaced numbers pick each light: surfaces in their order, then points, then the sky.
+fn picks(scene: &Scene, how: LightSampling, points: &[PointLight]) -> Vec<u32> {
+    const PICKS: u32 = 100_000;
+    let (surfaces, mut picked) = (scene.surfaces().len(), vec![0; scene.surfaces().len() + points.len() + 1]);
+    for i in 0..PICKS {
+        let u = (f64::from(i) + 0.5) / f64::from(PICKS);
+        let light = scene.sample_light(how, (DVec3::ZERO, 0.0), u, (0.3, 0.6)).unwrap();
+        let is_it = |p: &PointLight| (p.position - light.to_light).length() < 1e-12;
+        picked[match light.surface {
+            SKY => surfaces + points.len(),
+            NOWHERE => surfaces + points.iter().position(is_it).unwrap(),
+            surface => surface as usize,
+        }] += 1;
+    }
+    picked
+}
+
+/// Power, up to a factor π: area x radiance, 4 x intensity, and what the sky sends through a sphere around the scene.
+#[test]
+fn emitters_of_all_kinds_are_picked_by_power_or_alike() {
+    let points = [
+        PointLight { position: at(0.4, -1.3, 0.2), intensity: Rgb::new(0.3, 0.2, 0.9) },
+        PointLight { position: at(-1.4, 0.3, 0.7), intensity: Rgb::new(0.0, 0.8, 0.0) },
+    ];
+    let lights = [(Shape::Rectangle(RECTANGLE), Rgb::new(1.0, 2.0, 0.5)), (disk(DVec3::Z, 0.8), Rgb::ONE)];
+    let surfaces = scene(&lights, DVec3::Z).surfaces().to_vec();
+    let sky = Sky::Cosine { radiance: Rgb::new(0.2, 0.1, 0.3), exponent: 2.0, up: DVec3::Z };
+    let scene = Scene::lit_by(surfaces.clone(), &points, Some(sky), scene(&lights, DVec3::Z).sensor);
+    let bounds = surfaces.iter().map(|s| s.shape.bounds());
+    let (low, high) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap();
+    let squared = 0.25 * (high - low).length_squared();
+    let mut power: Vec<f64> = surfaces.iter().map(|s| s.shape.area() * s.material.le.element_sum()).collect();
+    power.extend(points.map(|p| 4.0 * p.intensity.element_sum()));
+    power.push(squared * 0.6 * TAU / 3.0);
+    let total: f64 = power.iter().sum();
+    let uniform = power.iter().map(|&p| if p > 0.0 { 0.2 } else { 0.0 }).collect::<Vec<f64>>();
+    let by_power: Vec<f64> = power.iter().map(|p| p / total).collect();
+    for (how, shares) in [(UNIFORM, uniform), (LightSampling::AREA, by_power)] {
+        let picked = picks(&scene, how, &points);
+        for (&picked, share) in picked.iter().zip(shares) {
+            assert!((f64::from(picked) - 1e5 * share).abs() <= 1.0, "{how:?}: {picked} {share}");
+        }
+    }
+    assert_eq!(scene.light_count(), 5);
+}
+
+/// One point light: I cos / d² exactly, every time; nothing through what stands between, or from below the plate.
+#[test]
+fn one_point_light_has_no_variance() {
+    let (normal, intensity) = (at(0.48, -0.36, 0.8), Rgb::new(3.0, 0.5, 1.0));
+    let blocker = |center| (Shape::Sphere(sphere(center, 0.05)), Rgb::ZERO);
+    let position = at(0.9, -0.4, 1.3);
+    let seen = intensity * (normal.dot(position) / position.length().powi(3));
+    // beside the way, behind the light, in the way
+    let blockers = [(at(-0.9, 0.4, 1.3), seen), (1.2 * position, seen), (0.6 * position, Rgb::ZERO)];
+    let cases = blockers.map(|(center, exact)| (position, center, exact)).into_iter();
+    for (position, center, exact) in cases.chain([(-position, 2.0 * position, Rgb::ZERO)]) {
+        let plates = scene(&[blocker(center)], normal);
+        let light = PointLight { position, intensity };
+        let scene = Scene::lit_by(plates.surfaces().to_vec(), &[light], None, plates.sensor);
+        let Sensor::Probe { origin, direction } = scene.sensor else { unreachable!() };
+        let ray = Ray { o: origin * 0.01, d: direction, from: NOWHERE };
+        let plate = scene.intersect(&ray, 0.0).unwrap();
+        let mut tally = Tally::default();
+        let stream = Address::of(&["lights", "point"]).stream(0, 0);
+        let start = Start { ray, response: 1.0, time: 0.0 };
+        let mut cx = Ctx::new(&scene, stream, &mut tally, &start);
+        for how in WAYS.into_iter().chain([UNIFORM]).cycle().take(300) {
+            let direct = cx.direct(&plate, how);
+            assert!(direct.is_none_or(|light| light.pdf.is_none()), "a point has no density");
+            let radiance = direct.map_or(Rgb::ZERO, |light| light.radiance);
+            assert!((radiance * PI - exact).abs().max_element() < 1e-14, "{how:?}: {radiance} {exact}");
+        }
+    }
+}
+
+/// Several points, and a surface: their irradiances add up however they are picked.
+#[test]
+fn point_lights_add_up() {
+    let points = [
+        PointLight { position: at(0.9, -0.4, 1.3), intensity: Rgb::new(0.3, 0.2, 0.9) },
+        PointLight { position: at(-1.4, 0.3, 0.7), intensity: Rgb::new(0.1, 0.8, 0.2) },
+    ];
+    let plates = scene(&[(disk(DVec3::Z * 2.5, 0.5), Rgb::new(4.0, 1.0, 3.0))], DVec3::Z);
+    let scene = Scene::lit_by(plates.surfaces().to_vec(), &points, None, plates.sensor);
+    let of_points: Rgb =
+        points.iter().map(|p| p.intensity * p.position.z / p.position.length().powi(3)).sum();
+    let exact = of_points / PI + Rgb::new(4.0, 1.0, 3.0) * (0.25 / (0.25 + 6.25));
+    for how in WAYS.into_iter().chain([UNIFORM]) {
+        let (mean, error) = direct(&scene, how, "points");
+        assert!((SIGMAS * error / exact).max_element() < 0.02, "{how:?}: too wide to tell: {error}");
+        let width = SIGMAS * error + 1e-12 * exact;
+        assert!(((mean - exact).abs() - width).max_element() < 0.0, "{how:?}: {mean} {exact} {width}");
     }
 }

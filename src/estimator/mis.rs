@@ -51,7 +51,10 @@ impl Technique {
     pub fn of_light(self, light: Option<PdfW>, direction: impl Fn() -> Option<PdfW>) -> f64 {
         match (light, self) {
             (None, _) | (_, Technique::Light) => 1.0,
-            (Some(light), _) => direction().map_or(1.0, |direction| self.weight(light, direction)),
+            (Some(_), Technique::Direction) => 0.0,
+            (Some(light), Technique::Both(_)) => {
+                direction().map_or(1.0, |direction| self.weight(light, direction))
+            }
         }
     }
 

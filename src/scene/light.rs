@@ -181,14 +181,16 @@ impl Lights {
             Emitter::Sky(sky) => {
                 let wi = sky.sample(v);
                 let pdf = PdfW(pmf * sky.pdf(wi).0);
-                Some(LightSample {
+                let sample = LightSample {
                     to_light: wi * FAR,
                     distance: FAR,
                     le: sky.radiance(wi),
                     weight: 1.0 / pdf.0,
                     pdf: Some(pdf),
                     surface: SKY,
-                })
+                };
+                // rounding may carry a direction below the horizon
+                (pdf.0 > 0.0).then_some(sample)
             }
         }
     }
@@ -196,6 +198,10 @@ impl Lights {
     /// Density [1/sr] with which [`Lights::sample`] at `ray.o` draws the direction towards the emitter that `ray` hit.
     #[inline]
     pub fn pdf(&self, surfaces: &[Surface], how: LightSampling, ray: &Ray, hit: &Hit<'_>, time: f64) -> PdfW {
+        let cos = hit.frame.n.dot(hit.wo);
+        if cos <= 0.0 {
+            return PdfW(0.0); // the back of a clear interface, which emits nothing
+        }
         let is_hit = |l: &&Light| match l.emitter {
             Emitter::Surface(id, _) => id == hit.surface,
             Emitter::Sky(_) => hit.surface == SKY,
@@ -217,9 +223,7 @@ impl Lights {
                         .map(|solid_angle| PdfW(1.0 / solid_angle)),
                     Points::Area => None,
                 }
-                .unwrap_or_else(|| {
-                    pdf.per_solid_angle((hit.p - ray.o).length_squared(), hit.frame.n.dot(hit.wo))
-                })
+                .unwrap_or_else(|| pdf.per_solid_angle((hit.p - ray.o).length_squared(), cos))
             }
         };
         PdfW(pmf * direction.0)

@@ -146,8 +146,10 @@ impl Scene {
         let surface = &self.surfaces[id as usize];
         let (p, frame) = surface.at(ray.o + t * ray.d);
         let material = &surface.material;
-        let seen = frame.n.dot(ray.d) < 0.0 || material.bsdf.is_clear();
-        seen.then_some(Hit { p, frame, wo: -ray.d, material, le: material.le, surface: id })
+        let front = frame.n.dot(ray.d) < 0.0;
+        let le = if front { material.le } else { Rgb::ZERO };
+        let seen = front || material.bsdf.is_clear();
+        seen.then_some(Hit { p, frame, wo: -ray.d, material, le, surface: id })
     }
 
     /// Whether nothing stands between the point `ray.o` on surface `ray.from` and `ray.o + ray.d` on surface `to`.
