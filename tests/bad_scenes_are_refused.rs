@@ -139,7 +139,7 @@ fn impossible_sensors_are_refused() {
             "a resolution lies in 1 to 4096 pixels",
         ),
         ("{ camera = { origin = [0, 0, 0], direction = [0, 0, 1] } }", "missing field `up`"),
-        ("{ eye = { origin = [0, 0, 0] } }", "expected one of `probe`, `irradiance`, `camera`"),
+        ("{ eye = { origin = [0, 0, 0] } }", "expected one of `probe`, `irradiance`, `parallel`, `camera`"),
     ];
     all_refused(&cases, |sensor| file(GOOD_SHAPE, "1", sensor, "implicit"));
 }

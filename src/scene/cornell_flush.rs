@@ -45,7 +45,8 @@ pub const BLOCKS: [Block; 2] = [
     Block { corner: [423.0, 247.0], u: [-158.0, 49.0], v: [49.0, 159.0], height: 330.0 },
 ];
 
-/// How far in front of its tile the sensor stands: so little that no block comes between.
+/// How far in front of its tile the sensor stands: so little that it sees the tile even where a block stands on it, which
+/// is dark.
 const LIFT: f64 = 0.01;
 
 /// The box, with or without its blocks; the sensor looks straight at one of the [`TILES`].

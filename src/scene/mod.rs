@@ -192,7 +192,7 @@ impl Scene {
     }
 
     /// The largest albedo of any surface and channel: bounds how slowly throughput can fall. Clear interfaces do not
-    /// count: walks leave them by geometry.
+    /// count, because walks leave them by geometry; metals do as they reflect what falls on them straight.
     pub fn max_albedo(&self) -> f64 {
         let opaque = self.surfaces.iter().map(|s| s.material.bsdf).filter(|bsdf| !bsdf.is_clear());
         opaque.map(|bsdf| bsdf.albedo(1.0).max_element()).fold(0.0, f64::max)

@@ -1,14 +1,13 @@
 //! An experiment file, exactly as it was written.
 
 mod claim;
+mod primitives;
 mod scene;
 mod walk;
 
 pub use claim::{Claim, Limits, Plot, Quantity};
-pub use scene::{
-    BsdfSpec, FlushSpec, FurnaceSpec, LooksAt, PointSpec, PrimitiveSpec, PrimitivesSpec, SceneSpec,
-    SensorSpec, ShapeSpec, SkySpec, SphereSpec,
-};
+pub use primitives::{BsdfSpec, PointSpec, PrimitiveSpec, PrimitivesSpec, SensorSpec, ShapeSpec, SkySpec};
+pub use scene::{FlushSpec, FurnaceSpec, LooksAt, SceneSpec, SphereSpec};
 pub use walk::{EstimatorSpec, RouletteSpec, TechniqueSpec};
 
 use super::error::Error;
