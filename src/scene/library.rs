@@ -194,6 +194,11 @@ fn integrating_sphere(patches: &[Patch], looks_at: usize, view: View) -> Scene {
 }
 
 impl Setting {
+    /// Whether nothing moves.
+    pub fn is_at_rest(&self) -> bool {
+        self.primitives.iter().all(|p| p.velocity == DVec3::ZERO)
+    }
+
     fn build(&self) -> Scene {
         let surface = |p: &Primitive| Surface::moving(p.shape, p.material, p.velocity);
         Scene::lit_by(self.primitives.iter().map(surface).collect(), &self.points, self.sky, self.sensor)

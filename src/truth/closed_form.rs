@@ -7,7 +7,7 @@ use super::moments::Central;
 use super::walk::Walk;
 use crate::estimator::{Estimate, Estimator, Explicit, Property, Technique};
 use crate::scene::library::{Patch, SceneKind, View};
-use crate::scene::{Points, Rgb};
+use crate::scene::{Points, Rgb, Sensor};
 use std::f64::consts::PI;
 
 /// Closed forms for one estimator in one scene, per channel and per bounce.
@@ -33,6 +33,8 @@ enum Theory {
         series: Series,
         /// Variance of one sample, where known.
         variance: Option<Rgb>,
+        /// Whether what is seen directly is always the same: one ray into a scene at rest.
+        steady: bool,
         /// What this estimator has no way to find.
         missed: Option<Series>,
     },
@@ -52,7 +54,7 @@ impl ClosedForm {
             SceneKind::IntegratingSphere { patches, looks_at, view } => {
                 among(Enclosure::sphere(patches), *looks_at, *view, false)
             }
-            SceneKind::Exhibit { name, parameter, .. } => match &gallery::find(name)?.theory {
+            SceneKind::Exhibit { name, parameter, setting } => match &gallery::find(name)?.theory {
                 gallery::Theory::Series { mean, missed, variance } => Theory::Series {
                     series: mean(*parameter),
                     missed: missed(*parameter, estimator),
@@ -107,11 +109,11 @@ impl ClosedForm {
 
     /// The central moment of the given order (2, 3 or 4) of one sample.
     pub fn central(&self, channel: usize, counted: Counted, order: usize) -> Known {
-        if let Theory::Series { variance, .. } = &self.theory {
+        if let Theory::Series { variance, steady, .. } = &self.theory {
             let mean = self.expected(channel, counted);
             return match variance {
                 // contributions are not negative: a mean of zero leaves no room for any
-                _ if mean == 0.0 => Known::Value(0.0),
+                _ if mean == 0.0 || (*steady && counted == Counted::Only(0)) => Known::Value(0.0),
                 Some(v)
                     if mean == self.expected(channel, Counted::All) && (order == 2 || v[channel] == 0.0) =>
                 {

@@ -31,7 +31,7 @@ pub const EXHIBIT: Exhibit = Exhibit {
         // a clamp cuts off what circles in the ball for long
         variance: |_, estimator| {
             let roulette = estimator.roulette();
-            (roulette.rule == Rule::None && roulette.reaches(1000)).then_some(Rgb::ZERO)
+            (roulette.rule == Rule::None && roulette.reaches(60)).then_some(Rgb::ZERO)
         },
     },
 };

@@ -2,7 +2,7 @@
 
 use super::mirror_light::{beside_mirror, wall};
 use super::props::{FLOOR, LE};
-use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, cosine_without_roulette, nothing_missed};
 use crate::scene::{Bsdf, Rgb};
 use crate::truth::optics::interface::conductor;
 
@@ -22,6 +22,10 @@ pub const EXHIBIT: Exhibit = Exhibit {
             Series::finite(vec![Rgb::ZERO, FLOOR * LE * wall().direct(), FLOOR * LE * image])
         },
         missed: nothing_missed,
-        variance: |_, _| None,
+        variance: |k, estimator| {
+            let variance = |c: usize| wall().fresnel_implicit_variance(|cos| conductor(cos, ETA[c], k)).value;
+            let two_bounces = cosine_without_roulette(estimator) && estimator.roulette().reaches(2);
+            two_bounces.then(|| FLOOR * FLOOR * LE * LE * Rgb::new(variance(0), variance(1), variance(2)))
+        },
     },
 };
