@@ -5,6 +5,7 @@ mod curves;
 pub mod figure;
 pub mod images;
 pub mod lookup;
+pub mod mitsuba;
 mod page;
 pub mod plots;
 mod summary;

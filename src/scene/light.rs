@@ -133,6 +133,14 @@ impl Lights {
         self.sky.as_ref()
     }
 
+    /// The lights without extent, but for those that are dark.
+    pub fn points(&self) -> impl Iterator<Item = &PointLight> {
+        self.lights.iter().filter_map(|l| match &l.emitter {
+            Emitter::Point(point) => Some(point),
+            _ => None,
+        })
+    }
+
     /// Whether some light comes from points, which no ray can hit.
     pub fn has_points(&self) -> bool {
         self.lights.iter().any(|l| matches!(l.emitter, Emitter::Point(_)))

@@ -40,6 +40,8 @@ pub enum Command {
     },
     /// Renders one image, e.g. `experiment render cornell_box --estimator explicit --spp 64 -o out.exr`
     Render(Render),
+    /// Writes a scene for another renderer, e.g. `experiment export cornell_box --to mitsuba -o box.xml`
+    Export(Export),
 }
 
 #[derive(Args)]
@@ -58,6 +60,46 @@ pub struct Render {
     /// Where to write; a PNG preview goes beside it
     #[arg(short, long, default_value = "out.exr")]
     pub output: PathBuf,
+}
+
+#[derive(Args)]
+pub struct Export {
+    /// cornell_box, cornell_empty, cornell_flush, furnace, furnace_box, or a scene of the gallery
+    pub scene: String,
+    /// Which renderer shall read it
+    #[arg(long, value_enum, default_value_t = Renderer::Mitsuba)]
+    pub to: Renderer,
+    /// Where to write, instead of standard output; triangles go into OBJ files beside it
+    #[arg(short, long, value_name = "FILE.xml")]
+    pub output: Option<PathBuf>,
+    /// Pixels along each edge of a Cornell box's image [default: 32]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub resolution: Option<u32>,
+    /// Which tile of cornell_flush is measured, 1 to 6 [default: 1]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=6))]
+    pub tile: Option<u8>,
+    /// cornell_flush with its two blocks
+    #[arg(long)]
+    pub blocks: bool,
+    /// Moves the scene's middle to the origin and multiplies lengths by S, which changes no radiance, but the rounding
+    /// errors of renderers in single precision
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub scale: Option<f64>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Renderer {
+    /// Mitsuba 3
+    Mitsuba,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("it must be finite and positive".to_owned())
+    }
 }
 
 #[derive(Args, Clone, Default)]

@@ -1,10 +1,12 @@
 //! The command line: `experiment rr_sweep`.
 
 mod args;
+mod export;
 mod files;
 mod progress;
 mod render;
 mod run;
+mod scene;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -44,6 +46,7 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
         Some(Command::List) => run::list(&cli.options),
         Some(Command::Plan { names }) => run::plans(names, &cli.options),
         Some(Command::Report { names }) => run::reports(names, &cli.options),
+        Some(Command::Export(args)) => export::export(args),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::args::{Options, Render};
 use crate::run::pool;
+use crate::scene::{Details, named};
 use crate::{HELD, INTERRUPTED};
 use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule, Technique};
 use furnace::experiment::{CellPlan, Error, run_cell};
@@ -18,11 +19,14 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         return Err(Error::Refused(format!("{output} must end in .exr; a PNG preview goes beside it")));
     }
     let resolution = args.resolution;
-    let scene = match args.scene.as_str() {
-        "cornell_box" | "cornell" => SceneKind::CornellBox { resolution },
-        "cornell_empty" => SceneKind::CornellEmpty { resolution },
-        other => {
-            return Err(Error::Refused(format!("no scene `{other}`; there are cornell_box, cornell_empty")));
+    let scene = match named(&args.scene, Details::default())? {
+        SceneKind::CornellBox { .. } => SceneKind::CornellBox { resolution },
+        SceneKind::CornellEmpty { .. } => SceneKind::CornellEmpty { resolution },
+        _ => {
+            return Err(Error::Refused(format!(
+                "{} has no image; cornell_box and cornell_empty have one",
+                args.scene
+            )));
         }
     };
     let roulette = Roulette { rule: Rule::Throughput { floor: 0.05 }, from: 5, clamp: None };
