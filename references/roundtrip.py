@@ -45,7 +45,7 @@ REFERENCE_DF = 31  # degrees of freedom of a stored pixel's standard error
 POWER = 0.9
 
 Value = namedtuple("Value", "mean error df")
-Difference = namedtuple("Difference", "name got right")
+Difference = namedtuple("Difference", "name got right whole")  # whole: what a difference is told relative to
 
 
 class CannotRun(Exception):
@@ -124,11 +124,11 @@ def judge(differences, alpha):
         limit = quantile(p, by.df)
         if abs(by.mean) > limit * by.error:
             found.append((d, by, limit))
-        if d.right.mean != 0:
-            smallest.append(((limit + quantile(1 - POWER, by.df)) * by.error / abs(d.right.mean), d.name))
+        if d.whole > 0:
+            smallest.append(((limit + quantile(1 - POWER, by.df)) * by.error / d.whole, d.name))
     smallest.sort()
     print(f"\n{len(differences)} comparisons, false-alarm probability {alpha:g} for all of them together.")
-    print(f"Smallest difference found with probability {POWER:.0%}, relative: "
+    print(f"Smallest difference found with probability {POWER:.0%}, relative to the whole: "
           f"median {smallest[len(smallest) // 2][0]:.1e}, worst {smallest[-1][0]:.1e} ({smallest[-1][1]}).")
     for d, by, limit in found:
         print(f"DIFFERS: {d.name}: {d.got.mean:.6g} instead of {d.right.mean:.6g}, "
@@ -249,7 +249,7 @@ def images(bench):
                 means, errors = stored[channel], stored[f"std_error.{channel}"]
                 right = average([Value(means[i], errors[i], REFERENCE_DF) for i in pixels])
                 got = mean_of([statistics.fmean(r[3 * i + c] for i in pixels) for r in renderings])
-                differences.append(Difference(f"{scene} {name} {channel}", got, right))
+                differences.append(Difference(f"{scene} {name} {channel}", got, right, right.mean))
         print(f"\n{scene}, {SIZE} x {SIZE} pixels, {len(renderings)} renderings of {bench.args.image_spp} samples a pixel")
         print(f"  {'image':8} {'stored':>20} {'exported':>20} {'z':>6}")
         for d in differences[:3]:
@@ -329,14 +329,14 @@ def flush(bench):
     print(f"\nRadiance of the tiles, {bench.args.seeds} renderings of {spp} samples each, scale {bench.args.scale:g}")
     print(f"  {'scene':21} {'tile':4} {'bounce':6} {'':1} {'deterministic':>18} {'furnace':>18} {'Mitsuba':>18} {'z':>6}")
     for scene, tile, k, channel in upto:
-        got = upto[scene, tile, k, channel]
+        got, whole = upto[scene, tile, k, channel], upto[scene, tile, "all", channel].mean
         values = [(str(k), minus(got, upto[scene, tile, k - 1, channel]) if k != "all" and k > 1 else got)]
         if k == "all":
             values.append((f"{bounces + 1}+", minus(got, upto[scene, tile, bounces, channel])))
         for bounce, value in values:
             ours, truth = own.get((scene, tile, bounce, channel), (None, None))
             name = f"{scene} tile {tile} bounce {bounce} {channel}"
-            differences = [Difference(f"{name}, {whose}", value, right)
+            differences = [Difference(f"{name}, {whose}", value, right, whole)
                            for whose, right in [("furnace", ours), ("deterministic", truth)] if right]
             score = f"{z(differences[0]):6.2f}" if differences else ""
             if bounce == "all" or not bench.args.quick:
@@ -370,7 +370,7 @@ def arguments():
     if args.seeds < 2:
         parser.error("a standard error needs at least 2 --seeds")
     args.bounces = 2 if args.quick else 7
-    args.own_samples = 200_000 if args.quick else 20_000_000
+    args.own_samples = 200_000 if args.quick else 2_000_000
     args.image_spp = args.image_spp or (16 if args.quick else 256)
     args.flush_spp = args.flush_spp or (1024 if args.quick else 16384)
     return args
