@@ -44,7 +44,7 @@ TILES = 4  # tiles along each edge
 REFERENCE_DF = 31  # degrees of freedom of a stored pixel's standard error
 POWER = 0.9
 
-Value = namedtuple("Value", "mean error df")
+Value = namedtuple("Value", "mean error df")  # error: its standard error, with so many degrees of freedom
 Difference = namedtuple("Difference", "name got right whole")  # whole: what a difference is told relative to
 
 
@@ -174,7 +174,8 @@ class Bench:
 
     def __init__(self, args, folder):
         self.args, self.folder, self.seed, self.exports = args, Path(folder), args.seed, 0
-        cargo = ["cargo", "run", "--quiet", "--locked", "--manifest-path", str(ROOT / "Cargo.toml"), "--bin", "experiment", "--"]
+        cargo = ["cargo", "run", "--quiet", "--locked", "--manifest-path", str(ROOT / "Cargo.toml")]
+        cargo += ["--bin", "experiment", "--"]
         self.program = [str(Path(args.experiment).resolve())] if args.experiment else cargo
         self.pool = ProcessPoolExecutor(args.jobs, initializer=prepare, initargs=(args.variant,))
 
@@ -250,7 +251,8 @@ def images(bench):
                 right = average([Value(means[i], errors[i], REFERENCE_DF) for i in pixels])
                 got = mean_of([statistics.fmean(r[3 * i + c] for i in pixels) for r in renderings])
                 differences.append(Difference(f"{scene} {name} {channel}", got, right, right.mean))
-        print(f"\n{scene}, {SIZE} x {SIZE} pixels, {len(renderings)} renderings of {bench.args.image_spp} samples a pixel")
+        spp = bench.args.image_spp
+        print(f"\n{scene}, {SIZE} x {SIZE} pixels, {len(renderings)} renderings of {spp} samples a pixel")
         print(f"  {'image':8} {'stored':>20} {'exported':>20} {'z':>6}")
         for d in differences[:3]:
             print(f"  {d.name[-1]:8} {shown(d.right):>20} {shown(d.got):>20} {z(d):6.2f}")
@@ -291,20 +293,24 @@ def own_values(bench):
         file.write_text(EXPERIMENT.format(samples=bench.args.own_samples, tiles=list(range(1, 7))))
         bench.experiment(str(file), "--quiet", "--jobs", str(bench.args.jobs), "--out", str(bench.folder))
         path = bench.folder / "flush" / "results.csv"
+    try:
+        with open(path, newline="") as file:
+            rows = list(csv.DictReader(file))
+    except (OSError, UnicodeDecodeError) as error:
+        raise CannotRun(f"cannot read {path}: {error}") from error
     values = {}
-    with open(path, newline="") as file:
-        for row in csv.DictReader(file):
-            if row["scene"] not in FLUSH or row["estimand"] not in ["mean", "bounce"] or not row.get("tile"):
-                continue
-            bounce = row["bounce"] if row["estimand"] == "bounce" else "all"
-            key = row["scene"], int(float(row["tile"])), bounce, row["channel"]
-            if not row["std_error"]:
-                continue  # infinite variance, or too few samples
-            ours = Value(float(row["mean"]), float(row["std_error"]), math.inf)
-            truth = Value(float(row["truth"]), float(row["truth_error"]), math.inf) if row.get("truth") else None
-            # of several estimators, the one that knows best
-            if key not in values or ours.error < values[key][0].error:
-                values[key] = ours, truth
+    for row in rows:
+        if row.get("scene") not in FLUSH or row.get("estimand") not in ["mean", "bounce"] or not row.get("tile"):
+            continue
+        if not row["std_error"]:
+            continue  # infinite variance, or too few samples
+        bounce = row["bounce"] if row["estimand"] == "bounce" else "all"
+        key = row["scene"], int(float(row["tile"])), bounce, row["channel"]
+        ours = Value(float(row["mean"]), float(row["std_error"]), math.inf)
+        truth = Value(float(row["truth"]), float(row["truth_error"]), math.inf) if row["truth"] else None
+        # of several estimators, the one that knows best
+        if key not in values or ours.error < values[key][0].error:
+            values[key] = ours, truth
     if not values:
         raise CannotRun(f"{path} has no rows of {' or '.join(FLUSH)} with a column `tile`")
     return values
@@ -313,6 +319,7 @@ def own_values(bench):
 def flush(bench):
     """Part 2."""
     spp, bounces = bench.args.flush_spp, bench.args.bounces
+    own = {} if bench.args.mitsuba_alone else own_values(bench)
     runs = {}
     for scene in FLUSH:
         for tile in range(1, 7):
@@ -320,14 +327,14 @@ def flush(bench):
             file = bench.export("cornell_flush", "--tile", str(tile), *blocks, "--scale", str(bench.args.scale))
             for k in [*range(1, bounces + 1), "all"]:
                 runs[scene, tile, k] = bench.start(file, spp, -1 if k == "all" else k + 1)
-    own = {} if bench.args.mitsuba_alone else own_values(bench)
     upto = {}
     for key, run in runs.items():
         renderings = [future.result() for future in run]
         for c, channel in enumerate(CHANNELS):
             upto[(*key, channel)] = mean_of([r[c] for r in renderings])
     print(f"\nRadiance of the tiles, {bench.args.seeds} renderings of {spp} samples each, scale {bench.args.scale:g}")
-    print(f"  {'scene':21} {'tile':4} {'bounce':6} {'':1} {'deterministic':>18} {'furnace':>18} {'Mitsuba':>18} {'z':>6}")
+    row = "  {:21} {:4} {:6} {:1} {:>18} {:>18} {:>18} {:>6}"
+    print(row.format("scene", "tile", "bounce", "", "deterministic", "furnace", "Mitsuba", "z"))
     for scene, tile, k, channel in upto:
         got, whole = upto[scene, tile, k, channel], upto[scene, tile, "all", channel].mean
         values = [(str(k), minus(got, upto[scene, tile, k - 1, channel]) if k != "all" and k > 1 else got)]
@@ -338,9 +345,9 @@ def flush(bench):
             name = f"{scene} tile {tile} bounce {bounce} {channel}"
             differences = [Difference(f"{name}, {whose}", value, right, whole)
                            for whose, right in [("furnace", ours), ("deterministic", truth)] if right]
-            score = f"{z(differences[0]):6.2f}" if differences else ""
+            score = f"{z(differences[0]):.2f}" if differences else ""
             if bounce == "all" or not bench.args.quick:
-                print(f"  {scene:21} {tile:4} {bounce:6} {channel} {shown(truth):>18} {shown(ours):>18} {shown(value):>18} {score:>6}")
+                print(row.format(scene, tile, bounce, channel, shown(truth), shown(ours), shown(value), score))
             yield from differences
 
 
@@ -348,31 +355,34 @@ def flush(bench):
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0], epilog="Exit status: 0 no difference found, "
-                                     "1 a difference found, 2 could not run.")
-    parser.add_argument("--experiment", metavar="PATH", help="the experiment program; without it cargo builds and runs it")
-    parser.add_argument("--quick", action="store_true", help="less than a minute; finds differences of some per cent")
-    parser.add_argument("--results", metavar="CSV", type=Path, help="take the bench's values from this results.csv instead of sampling them")
-    parser.add_argument("--mitsuba-alone", action="store_true", help="print Mitsuba's values of the tiles without comparing them")
-    parser.add_argument("--only", choices=["images", "flush"], help="one of the two parts")
-    parser.add_argument("--write", metavar="FILE.exr", type=Path, help="render --scene and write a reference; compares nothing")
-    parser.add_argument("--scene", default="cornell_box", help="what --write renders (default %(default)s)")
-    parser.add_argument("--resolution", type=int, default=SIZE, help="pixels along each edge with --write (default %(default)s)")
-    parser.add_argument("--variant", default="scalar_rgb", help="Mitsuba's variant (default %(default)s, which needs no LLVM)")
-    parser.add_argument("--scale", type=float, default=100.0, help="scale of the flush box (default %(default)s)")
-    parser.add_argument("--seeds", type=int, default=32, help="renderings a value (default %(default)s)")
-    parser.add_argument("--seed", type=int, default=1, help="the first seed")
-    parser.add_argument("--image-spp", type=int, help="samples a pixel and rendering")
-    parser.add_argument("--flush-spp", type=int, help="samples a tile and rendering")
-    parser.add_argument("--alpha", type=float, default=1e-3, help="probability of a false alarm (default %(default)s)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (default: one a core)")
+    parser = argparse.ArgumentParser(
+        description=__doc__.split("\n\n")[0],
+        epilog="Exit status: 0 no difference found, 1 a difference found, 2 could not run.",
+    )
+    add = parser.add_argument
+    add("--experiment", metavar="PATH", help="the experiment program; without it cargo builds and runs it")
+    add("--quick", action="store_true", help="less than a minute; finds differences of some per cent")
+    add("--only", choices=["images", "flush"], help="one of the two parts")
+    add("--results", metavar="CSV", type=Path, help="the bench's values of the tiles, instead of sampling them")
+    add("--mitsuba-alone", action="store_true", help="print Mitsuba's values of the tiles, uncompared")
+    add("--write", metavar="FILE.exr", type=Path, help="render --scene into a stored reference; compares nothing")
+    add("--scene", default="cornell_box", help="what --write renders (default %(default)s)")
+    add("--resolution", type=int, default=SIZE, help="pixels along each edge of it (default %(default)s)")
+    add("--variant", default="scalar_rgb", help="Mitsuba's variant (default %(default)s, which needs no LLVM)")
+    add("--scale", type=float, default=100.0, help="scale of the flush box (default %(default)s)")
+    add("--seeds", type=int, default=32, help="renderings a value (default %(default)s)")
+    add("--seed", type=int, default=1, help="the first seed (default %(default)s)")
+    add("--image-spp", type=int, help="samples a pixel and rendering")
+    add("--flush-spp", type=int, help="samples a tile and rendering")
+    add("--alpha", type=float, default=1e-3, help="probability of a false alarm (default %(default)s)")
+    add("--jobs", type=int, default=os.cpu_count(), help="processes (default: one a core)")
     args = parser.parse_args()
     if args.seeds < 2:
         parser.error("a standard error needs at least 2 --seeds")
     args.bounces = 2 if args.quick else 7
-    args.own_samples = 200_000 if args.quick else 2_000_000
-    args.image_spp = args.image_spp or (16 if args.quick else 256)
-    args.flush_spp = args.flush_spp or (1024 if args.quick else 16384)
+    args.own_samples = 400_000 if args.quick else 2_000_000
+    args.image_spp = args.image_spp or (32 if args.quick else 256)
+    args.flush_spp = args.flush_spp or (2048 if args.quick else 16384)
     return args
 
 
@@ -386,16 +396,18 @@ def main():
         raise CannotRun(f"{error}; `pip install mitsuba` brings it") from error
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(args, folder)
-        with bench.pool:
+        try:
             if args.write:
                 file = bench.export(args.scene, "--resolution", str(args.resolution))
                 renderings = [future.result() for future in bench.start(file, args.image_spp)]
                 write_exr(args.write, renderings, args.resolution)
                 return 0
-            print(f"Mitsuba {mitsuba.__version__}, {args.variant}")
+            print(f"Mitsuba {mitsuba.__version__}, {args.variant}", flush=True)
             parts = {"images": images, "flush": flush}
             chosen = [part for name, part in parts.items() if args.only in [None, name]]
             differences = [difference for part in chosen for difference in part(bench)]
+        finally:
+            bench.pool.shutdown(cancel_futures=True)
     if not differences:
         print("Nothing was compared.")
         return 0

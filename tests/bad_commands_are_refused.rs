@@ -77,13 +77,14 @@ fn names_that_nothing_has() {
     refuses(&sweep, "rr_sweep banana", &["no experiment called `banana`"]);
     refuses(&sweep, "missing.toml", &["cannot read missing.toml", "No such file"]);
     refuses(&sweep, "render kitchen", &["no scene `kitchen`", "there are cornell_box, cornell_empty"]);
+    refuses(&sweep, "render furnace", &["furnace has no image; cornell_box and cornell_empty have one"]);
     refuses(&sweep, "render cornell_box --estimator bdpt", &["no estimator `bdpt`", "explicit, implicit"]);
     refuses(&place(&[]), "anything", &["there are none in the folder experiments/"]);
 }
 
 #[test]
 fn an_experiment_named_like_a_command() {
-    for name in ["list", "plan", "report", "render", "help"] {
+    for name in ["list", "plan", "report", "render", "export", "help"] {
         let place = place(&[(name, GOOD)]);
         let words = format!("experiments/{name}.toml: `{name}` is a command; rename the file");
         refuses(&place, &format!("experiments/{name}.toml"), &[&words]);

@@ -109,7 +109,7 @@ fn exported(scene: &Scene, placement: Placement) -> (Node, HashMap<String, Vec<D
         // vertices count from 1
         lines("f ").flatten().map(|i| vertices[i as usize - 1]).collect()
     };
-    let meshes = export.meshes.iter().map(|(name, obj)| (name.clone(), corners(obj))).collect();
+    let meshes = export.meshes.iter().map(|mesh| (mesh.name.clone(), corners(&mesh.text))).collect();
     assert_eq!((roots.len(), roots[0].tag.as_str()), (1, "scene"));
     (roots.remove(0), meshes)
 }
@@ -398,7 +398,7 @@ fn the_command_writes_the_scene() {
     let scene = SceneKind::CornellFlush { tile: 5, blocks: true }.build();
     let right = export(&scene, Placement::centred(&scene, 100.0), "flush").unwrap();
     assert_eq!(files["flush.xml"], right.xml);
-    right.meshes.iter().for_each(|(name, obj)| assert_eq!(&files[name], obj));
+    right.meshes.iter().for_each(|mesh| assert_eq!(files[&mesh.name], mesh.text));
 }
 
 /// Whatever the file is called, its meshes are found.

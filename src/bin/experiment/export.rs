@@ -27,8 +27,8 @@ pub fn export(args: &Export) -> Result<u8, Error> {
         return Ok(HELD);
     };
     // the scene last: where it is, its meshes are
-    for (name, text) in &export.meshes {
-        write(&output.with_file_name(name), text)?;
+    for mesh in &export.meshes {
+        write(&output.with_file_name(&mesh.name), &mesh.text)?;
     }
     write(output, &export.xml)?;
     Ok(HELD)

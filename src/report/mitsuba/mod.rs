@@ -17,9 +17,17 @@ use xml::Element;
 pub struct Export {
     /// The scene file.
     pub xml: String,
-    /// Triangles, which have to stand in files of their own: name, and text in the OBJ format. They belong beside the
-    /// scene file.
-    pub meshes: Vec<(String, String)>,
+    /// Triangles, which have to stand in files of their own, beside the scene file.
+    pub meshes: Vec<Mesh>,
+}
+
+/// A file of triangles.
+#[derive(Debug)]
+pub struct Mesh {
+    /// Its name.
+    pub name: String,
+    /// Its text, in the OBJ format.
+    pub text: String,
 }
 
 /// Where the scene's points go: radiance depends on neither number.

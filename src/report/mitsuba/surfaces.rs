@@ -1,18 +1,14 @@
 //! Surfaces.
 
-use super::Placement;
 use super::xml::{Element, numbers};
+use super::{Mesh, Placement};
 use crate::sampling::warp::Frame;
 use crate::scene::geometry::{SpherePatch, Triangle};
 use crate::scene::{Bsdf, Material, Rgb, Scene, Shape, Surface};
 use glam::DVec3;
 
 /// One element for each surface, or for each row of triangles of one material, and the files that these need.
-pub fn shapes(
-    scene: &Scene,
-    placement: Placement,
-    stem: &str,
-) -> Result<(Vec<Element>, Vec<(String, String)>), String> {
+pub fn shapes(scene: &Scene, placement: Placement, stem: &str) -> Result<(Vec<Element>, Vec<Mesh>), String> {
     let (mut elements, mut meshes) = (Vec::new(), Vec::new());
     let together = |a: &Surface, b: &Surface| {
         a.material == b.material && matches!((&a.shape, &b.shape), (Shape::Triangle(_), Shape::Triangle(_)))
@@ -28,7 +24,7 @@ pub fn shapes(
             Shape::Triangle(_) => {
                 let name = format!("{}_mesh_{}.obj", file_name(stem)?, meshes.len() + 1);
                 let mesh = Element::plugin("shape", "obj").set("string", "filename", &name);
-                meshes.push((name, obj(group, placement)));
+                meshes.push(Mesh { name, text: obj(group, placement) });
                 mesh.set("boolean", "face_normals", true)
             }
             Shape::Rectangle(r) => {
