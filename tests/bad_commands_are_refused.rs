@@ -52,7 +52,7 @@ fn usage_errors() {
         ("x --samples 1e3", &["invalid value '1e3' for '--samples <N>'"]),
         ("x --seed -1", &["-1"]),
         ("x --jobs many", &["invalid value 'many' for '--jobs <N>'"]),
-        ("x --format xml", &["invalid value 'xml'", "text, json"]),
+        ("x --format xml", &["invalid value 'xml'", "text, json, mitsuba"]),
         ("plan", &["<NAMES>"]),
         ("report", &["<NAMES>"]),
         ("render", &["<SCENE>"]),
@@ -79,6 +79,7 @@ fn names_that_nothing_has() {
     // a mistake in the last name must not cost the time of the first
     refuses(&sweep, "rr_sweep banana", &["no experiment called `banana`"]);
     refuses(&sweep, "missing.toml", &["cannot read missing.toml", "No such file"]);
+    refuses(&sweep, "rr_sweep --format mitsuba", &["only `export` writes --format mitsuba"]);
     refuses(&sweep, "render kitchen", &["no scene `kitchen`", "`cornell_box`, `cornell_empty`"]);
     refuses(&sweep, "render furnace", &["furnace has no camera"]);
     refuses(&sweep, "render cornell_box -o x.png", &["x.png must end in .exr"]);
@@ -93,7 +94,7 @@ fn names_that_nothing_has() {
 
 #[test]
 fn an_experiment_named_like_a_command() {
-    for name in ["list", "plan", "report", "render", "reference", "help"] {
+    for name in ["list", "plan", "report", "render", "reference", "export", "help"] {
         let place = place(&[(name, GOOD)]);
         let words = format!("experiments/{name}.toml: `{name}` is a command; rename the file");
         refuses(&place, &format!("experiments/{name}.toml"), &[&words]);

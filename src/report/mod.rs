@@ -6,6 +6,7 @@ pub mod difference;
 pub mod figure;
 pub mod images;
 pub mod lookup;
+pub mod mitsuba;
 mod page;
 pub mod plots;
 mod summary;

@@ -133,6 +133,14 @@ impl Lights {
         self.sky.as_ref()
     }
 
+    /// The lights without extent, but for those that are dark.
+    pub fn points(&self) -> impl Iterator<Item = &PointLight> {
+        self.lights.iter().filter_map(|l| match &l.emitter {
+            Emitter::Point(point) => Some(point),
+            _ => None,
+        })
+    }
+
     /// One light and the probability of its choice.
     #[inline]
     fn pick(&self, pick: Pick, u: f64) -> Option<(&Light, f64)> {

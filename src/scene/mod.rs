@@ -185,6 +185,16 @@ impl Scene {
         &self.surfaces
     }
 
+    /// The lights without extent, but for those that are dark.
+    pub fn points(&self) -> impl Iterator<Item = &PointLight> {
+        self.lights.points()
+    }
+
+    /// The environment, if there is one.
+    pub fn sky(&self) -> Option<&Sky> {
+        self.lights.sky()
+    }
+
     /// How many emitters there are; with one there is nothing to pick.
     #[inline]
     pub fn light_count(&self) -> usize {

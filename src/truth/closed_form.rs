@@ -6,7 +6,7 @@ use super::gallery::{self, Series};
 use super::moments::Central;
 use super::walk::Walk;
 use crate::estimator::{Estimate, Estimator, Explicit, Property, Technique};
-use crate::scene::library::{Patch, SceneKind, View};
+use crate::scene::library::{Patch, SceneKind, Setting, View};
 use crate::scene::{Points, Rgb, Sensor};
 use std::f64::consts::PI;
 
@@ -31,12 +31,12 @@ enum Theory {
     /// From lights to where one looks.
     Series {
         series: Series,
-        /// Variance of one sample, where known.
-        variance: Option<Rgb>,
-        /// Whether what is seen directly is always the same: one ray into a scene at rest.
-        steady: bool,
         /// What this estimator has no way to find.
         missed: Option<Series>,
+        /// Variance of one sample, where known.
+        variance: Option<Rgb>,
+        /// Bounces below this one have no noise.
+        steady: u32,
     },
 }
 
@@ -59,6 +59,7 @@ impl ClosedForm {
                     series: mean(*parameter),
                     missed: missed(*parameter, estimator),
                     variance: variance(*parameter, estimator),
+                    steady: steady(setting, estimator),
                 },
                 gallery::Theory::Chain { enclosure, looks_at, touching } => {
                     among(enclosure(*parameter), *looks_at, View::Probe, *touching)
@@ -113,7 +114,7 @@ impl ClosedForm {
             let mean = self.expected(channel, counted);
             return match variance {
                 // contributions are not negative: a mean of zero leaves no room for any
-                _ if mean == 0.0 || (*steady && counted == Counted::Only(0)) => Known::Value(0.0),
+                _ if mean == 0.0 || is_below(counted, *steady) => Known::Value(0.0),
                 Some(v)
                     if mean == self.expected(channel, Counted::All) && (order == 2 || v[channel] == 0.0) =>
                 {
@@ -121,6 +122,14 @@ impl ClosedForm {
                 }
                 _ => Known::Unknown,
             };
+        }
+        // one ray into a scene at rest sees what is there
+        let one_ray = |seen: &[f64]| seen.contains(&1.0);
+        if let Theory::Enclosure { seen, .. } = &self.theory
+            && one_ray(seen)
+            && is_below(counted, 1)
+        {
+            return Known::Value(0.0);
         }
         match self.moments(channel, counted) {
             Err(known) => known,
@@ -183,4 +192,21 @@ fn among(enclosure: Enclosure, looks_at: usize, view: View, touching: bool) -> T
         View::Irradiance => (enclosure.seen_from(looks_at).to_vec(), PI),
     };
     Theory::Enclosure { enclosure, seen, response, touching }
+}
+
+/// Whether only one bounce counts, and it comes before `bounce`.
+fn is_below(counted: Counted, bounce: u32) -> bool {
+    matches!(counted, Counted::Only(k) if k < bounce)
+}
+
+/// The first bounce with noise: what one ray into a scene at rest sees directly has none, nor has light that one point
+/// sends to what it sees, where it is sampled.
+fn steady(setting: &Setting, estimator: &Estimator) -> u32 {
+    let one_ray = matches!(setting.sensor, Sensor::Probe { .. }) && setting.is_at_rest();
+    let dark = setting.sky.is_none() && setting.primitives.iter().all(|p| p.material.le == Rgb::ZERO);
+    match (one_ray, dark && setting.points.len() == 1 && estimator.samples_lights()) {
+        (false, _) => 0,
+        (true, false) => 1,
+        (true, true) => 2,
+    }
 }

@@ -46,6 +46,8 @@ pub enum Command {
     /// file as not stopping. Exit status: 0 the error is reached, 1 --max-samples came first, 130 interrupted (what is
     /// finished is kept).
     Reference(Reference),
+    /// Writes a scene for another renderer, e.g. `experiment export cornell_box --format mitsuba -o box.xml`
+    Export(Export),
 }
 
 #[derive(Args)]
@@ -93,6 +95,37 @@ fn relative_error(text: &str) -> Result<f64, String> {
     if error > 0.0 && error < 1.0 { Ok(error) } else { Err("it lies inside (0, 1)".to_owned()) }
 }
 
+#[derive(Args)]
+pub struct Export {
+    /// cornell_box, cornell_empty, cornell_flush, furnace, furnace_box, or a scene of the gallery
+    pub scene: String,
+    /// Where to write, instead of standard output; triangles go into OBJ files beside it
+    #[arg(short, long, value_name = "FILE.xml")]
+    pub output: Option<PathBuf>,
+    /// Pixels along each edge of a Cornell box's image [default: 32]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub resolution: Option<u32>,
+    /// Which tile of cornell_flush is measured, 1 to 6 [default: 1]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=6))]
+    pub tile: Option<u8>,
+    /// cornell_flush with its two blocks
+    #[arg(long)]
+    pub blocks: bool,
+    /// Moves the scene's middle to the origin and multiplies lengths by S, which changes no radiance, but the rounding
+    /// errors of renderers in single precision
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub scale: Option<f64>,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err("it must be finite and positive".to_owned())
+    }
+}
+
 #[derive(Args, Clone, Default)]
 pub struct Options {
     /// Write to DIR/NAME instead of reports/NAME
@@ -135,4 +168,6 @@ pub enum Format {
     Text,
     /// A JSON object an experiment, on one line
     Json,
+    /// A scene file for Mitsuba 3, which is what `export` writes
+    Mitsuba,
 }

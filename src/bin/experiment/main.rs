@@ -1,6 +1,7 @@
 //! The command line: `experiment rr_sweep`.
 
 mod args;
+mod export;
 mod files;
 mod progress;
 mod reference;
@@ -8,7 +9,7 @@ mod render;
 mod run;
 mod subject;
 
-use args::{Cli, Command};
+use args::{Cli, Command, Format};
 use clap::Parser;
 use furnace::experiment::Error;
 use std::process::ExitCode;
@@ -41,11 +42,16 @@ fn main() -> ExitCode {
 }
 
 fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
+    let exports = matches!(cli.command, Some(Command::Export(_)));
+    if cli.options.format == Format::Mitsuba && !exports {
+        return Err(Error::Refused("only `export` writes --format mitsuba".to_owned()));
+    }
     match &cli.command {
         None => run::all(&cli.names, &cli.options, stop),
         Some(Command::List) => run::list(&cli.options),
         Some(Command::Plan { names }) => run::plans(names, &cli.options),
         Some(Command::Report { names }) => run::reports(names, &cli.options),
+        Some(Command::Export(export)) => export::export(export, &cli.options),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),
         Some(Command::Reference(reference)) => reference::reference(reference, &cli.options, stop),
     }

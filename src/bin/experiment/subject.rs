@@ -3,13 +3,11 @@
 use crate::args::Options;
 use crate::files::Source;
 use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule, Technique};
-use furnace::experiment::input::Named;
-use furnace::experiment::spec::SceneSpec;
+use furnace::experiment::spec::{FurnaceSpec, SceneSpec, SphereSpec};
 use furnace::experiment::{Error, choices, plan};
 use furnace::scene::library::SceneKind;
 use furnace::scene::{Directions, LightSampling};
-use serde::Deserialize;
-use serde_json::json;
+use furnace::truth::gallery::EXHIBITS;
 use std::path::Path;
 
 /// The scene that a file would name so, at this resolution if it has one; or `FILE.toml:NAME`, a scene of an
@@ -18,14 +16,9 @@ pub fn scene(name: &str, resolution: u32, options: &Options) -> Result<SceneKind
     if let Some((file, label)) = name.rsplit_once(".toml:") {
         return scene_of_file(&format!("{file}.toml"), label, options);
     }
-    let name = if name == "cornell" { "cornell_box" } else { name };
-    let refused = |why: String| Error::Refused(format!("no scene `{name}`: {why}"));
-    // only cameras have a resolution; all scenes have their defaults
-    let with_resolution = Named::<SceneSpec>::deserialize(json!({ name: { "resolution": resolution } }));
-    let spec = with_resolution.or_else(|_| Named::<SceneSpec>::deserialize(json!(name)));
-    let spec = spec.map_err(|e| refused(e.to_string()))?;
-    let mut scenes = choices::scenes(&spec.0).map_err(refused)?;
-    Ok(scenes.swap_remove(0).value)
+    // only images have a resolution
+    let resolution = is_image(name).then_some(resolution);
+    named(name, Details { resolution, ..Details::default() })
 }
 
 fn scene_of_file(file: &str, label: &str, options: &Options) -> Result<SceneKind, Error> {
@@ -37,6 +30,61 @@ fn scene_of_file(file: &str, label: &str, options: &Options) -> Result<SceneKind
         Some(_) => Err(Error::Refused(format!("{file} has several scenes called `{label}`"))),
         None => Err(Error::Refused(format!("{file} has no scene called `{label}`"))),
     }
+}
+
+/// All but those of the gallery.
+const NAMES: [&str; 6] =
+    ["cornell_box", "cornell_empty", "cornell_flush", "furnace", "furnace_box", "integrating_sphere"];
+
+/// What can be said of a scene apart from its name.
+#[derive(Clone, Copy, Default)]
+pub struct Details {
+    /// Pixels along each edge of the image of a Cornell box.
+    pub resolution: Option<u32>,
+    /// The tile of `cornell_flush`, 1 to 6.
+    pub tile: Option<u8>,
+    /// Whether the blocks stand in `cornell_flush`.
+    pub blocks: bool,
+}
+
+/// The scene of this name; a detail that it does not have is refused.
+pub fn named(name: &str, details: Details) -> Result<SceneKind, Error> {
+    let Details { resolution, tile, blocks } = details;
+    let has = |option: &str, given: bool| match given {
+        true => Err(Error::Refused(format!("{name} has no {option}"))),
+        false => Ok(()),
+    };
+    let kind = match name {
+        "cornell_box" | "cornell" => SceneKind::CornellBox { resolution: resolution.unwrap_or(32) },
+        "cornell_empty" => SceneKind::CornellEmpty { resolution: resolution.unwrap_or(32) },
+        "cornell_flush" => {
+            let tile = usize::from(tile.unwrap_or(1)) - 1;
+            SceneKind::CornellFlush { tile, blocks }
+        }
+        "furnace" => usual(&SceneSpec::Furnace(FurnaceSpec::default()))?,
+        "furnace_box" => usual(&SceneSpec::FurnaceBox(FurnaceSpec::default()))?,
+        "integrating_sphere" => usual(&SceneSpec::IntegratingSphere(SphereSpec::default()))?,
+        _ if EXHIBITS.iter().any(|exhibit| exhibit.name == name) => {
+            usual(&SceneSpec::Exhibit { name: name.to_owned(), parameter: None })?
+        }
+        _ => {
+            let known: Vec<&str> = NAMES.into_iter().chain(EXHIBITS.iter().map(|e| e.name)).collect();
+            return Err(Error::Refused(format!("no scene `{name}`; there are {}", known.join(", "))));
+        }
+    };
+    has("--resolution", resolution.is_some() && !is_image(name))?;
+    has("--tile", tile.is_some() && name != "cornell_flush")?;
+    has("--blocks", blocks && name != "cornell_flush")?;
+    Ok(kind)
+}
+
+fn is_image(name: &str) -> bool {
+    matches!(name, "cornell_box" | "cornell" | "cornell_empty")
+}
+
+fn usual(spec: &SceneSpec) -> Result<SceneKind, Error> {
+    let mut choices = choices::scenes(spec).map_err(Error::Refused)?;
+    Ok(choices.swap_remove(0).value)
 }
 
 /// An unbiased estimator with parameters that do well in most scenes.
