@@ -1,11 +1,9 @@
 //! Variances of direct-light estimators against their definition: quadrature of each sample's value and square.
 
 use crate::common::{close, kernel, simpson};
-use furnace::truth::direct::direct_variance::Heuristic::{Balance, Power};
-use furnace::truth::direct::direct_variance::Sampled::{Area, Cone};
-use furnace::truth::direct::direct_variance::{
-    CoaxialDisk, Sampled, implicit_cosine, sphere_area, sphere_cone,
-};
+use furnace::estimator::Heuristic::{Balance, Power};
+use furnace::scene::Points::{self, Area, SolidAngle};
+use furnace::truth::direct::direct_variance::{CoaxialDisk, implicit_cosine, sphere_area, sphere_cone};
 use furnace::truth::quadrature::gauss_legendre;
 use glam::{DVec3, dvec3};
 use std::f64::consts::PI;
@@ -33,13 +31,13 @@ fn hits(disk: &CoaxialDisk, g: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Density per solid angle of a point of the light in a direction of cosine mu.
-fn light_density(disk: &CoaxialDisk, sampled: Sampled, mu: f64) -> f64 {
+fn light_density(disk: &CoaxialDisk, sampled: Points, mu: f64) -> f64 {
     match sampled {
         Area => {
             let square = (disk.height / mu).powi(2);
             square / (mu * PI * disk.radius * disk.radius)
         }
-        Cone => 1.0 / (2.0 * PI * (1.0 - disk.height / disk.height.hypot(disk.radius))),
+        SolidAngle => 1.0 / (2.0 * PI * (1.0 - disk.height / disk.height.hypot(disk.radius))),
     }
 }
 
@@ -57,7 +55,7 @@ fn disk_estimators_match_quadrature() {
         close(disk.implicit_cosine(), single(disk, |mu| mu / PI), 1e-9);
         close(disk.implicit_cosine(), implicit_cosine(disk.mean()), 1e-15);
         close(disk.implicit_uniform(), single(disk, |_| 1.0 / (2.0 * PI)), 1e-9);
-        for sampled in [Area, Cone] {
+        for sampled in [Area, SolidAngle] {
             let value = disk.explicit(sampled);
             close(value, single(disk, |mu| light_density(disk, sampled, mu)), 1e-9 * value.max(1.0));
         }
@@ -70,19 +68,19 @@ fn the_shortened_variances_equal_the_published_ones() {
         let t = (disk.radius / disk.height).powi(2);
         let (f, c) = (t / (1.0 + t), 1.0 / (1.0 + t).sqrt());
         close(disk.explicit(Area), t / 3.0 * (1.0 - (1.0 + t).powi(-3)) - f * f, 1e-12 * (1.0 + t));
-        close(disk.explicit(Cone), 4.0 * (1.0 - c) * (1.0 - c * c * c) / 3.0 - f * f, 1e-14);
+        close(disk.explicit(SolidAngle), 4.0 * (1.0 - c) * (1.0 - c * c * c) / 3.0 - f * f, 1e-14);
         close(disk.implicit_uniform(), 4.0 / 3.0 * (1.0 - c * c * c) - f * f, 1e-14);
     }
     // a light too small for the published differences
     let tiny = CoaxialDisk { height: 1.0, radius: 1e-4 };
-    close(tiny.explicit(Cone) / (5e-9_f64.powi(4) / 3.0), 1.0, 1e-7);
+    close(tiny.explicit(SolidAngle) / (5e-9_f64.powi(4) / 3.0), 1.0, 1e-7);
     close(tiny.explicit(Area) / (1e-32 / 3.0), 1.0, 1e-7);
 }
 
 #[test]
 fn mis_matches_quadrature() {
     for disk in &DISKS {
-        for sampled in [Area, Cone] {
+        for sampled in [Area, SolidAngle] {
             for heuristic in [Balance, Power] {
                 let light = |mu: f64| light_density(disk, sampled, mu);
                 let weigh = |x: f64| if heuristic == Balance { x } else { x * x };
@@ -118,7 +116,7 @@ fn mis_of_cosine_and_cone_by_the_balance_heuristic_has_a_closed_form() {
         let i22 = over(&|mu| mu - 2.0 * k * log(mu) - k * k / (mu + k));
         let wanted = 2.0 * i32 - (2.0 * i21).powi(2) + i22 / (1.0 - c) - (i11 / (1.0 - c)).powi(2);
         // the closed form cancels for small lights
-        close(disk.mis(Cone, Balance), wanted, 1e-15 * k.powi(4) + 1e-13);
+        close(disk.mis(SolidAngle, Balance), wanted, 1e-15 * k.powi(4) + 1e-13);
     }
 }
 

@@ -1,8 +1,9 @@
 //! Pixels and lenses against clipped polygons, quadrature and random points.
 
 use crate::common::{SplitMix, close, integrate, sees, simulate};
+use furnace::scene::camera::Lens;
 use furnace::truth::optics::exposure::{
-    Edge, Lens, Parts, Side, disc_through_lens, edge_through_lens, edge_through_lens_and_pixel,
+    Edge, Parts, Side, blur, disc_through_lens, edge_through_lens, edge_through_lens_and_pixel,
     joint_variance, ramp_random_variance, ramp_stratified_variance, tent_coverage, two_boxes,
 };
 use std::f64::consts::PI;
@@ -129,11 +130,11 @@ fn edge_by_chords(edge: f64, blur: f64) -> f64 {
 
 #[test]
 fn lens_blurs_edges() {
-    let lens = Lens { aperture: 0.05, focus: 4.0 };
+    let lens = Lens { radius: 0.05, focus: 4.0 };
     // by similar triangles: a ray from the rim through the point in focus
     for distance in [1.0f64, 4.0, 10.0] {
         let at = 0.05 + (0.0 - 0.05) / 4.0 * distance;
-        assert!((lens.blur(distance) - at.abs()).abs() < 1e-15);
+        assert!((blur(&lens, distance) - at.abs()).abs() < 1e-15);
     }
     for i in -15..=15 {
         let edge = f64::from(i) / 10.0 + 1e-3;
@@ -174,7 +175,7 @@ fn lens_blurs_discs() {
 
 #[test]
 fn lens_and_pixel_agree_with_samples() {
-    let (lens, object, edge, width) = (Lens { aperture: 0.2, focus: 4.0 }, 9.0, 0.07, 0.3);
+    let (lens, object, edge, width) = (Lens { radius: 0.2, focus: 4.0 }, 9.0, 0.07, 0.3);
     let sampled = simulate(11, 1_000_000, |r| {
         let (s, angle) = (0.2 * r.uniform().sqrt(), 2.0 * PI * r.uniform());
         // from the lens through the point in focus of the pixel's chief ray
@@ -183,7 +184,7 @@ fn lens_and_pixel_agree_with_samples() {
         let x = on_lens + (in_focus - on_lens) / lens.focus * object;
         if x <= edge { 1.0 } else { 0.0 }
     });
-    sees(sampled.mean, sampled.error, edge_through_lens_and_pixel(edge, lens.blur(object), width));
+    sees(sampled.mean, sampled.error, edge_through_lens_and_pixel(edge, blur(&lens, object), width));
 }
 
 /// Paths of a side are exponential variables with its mean, plus noise of zero mean.

@@ -4,6 +4,8 @@
 //! Differences such as E X² - F² are expanded by hand: errors are a few 1e-16 relative unless stated.
 
 use super::form_factor::disk_coaxial;
+use crate::estimator::Heuristic;
+use crate::scene::Points;
 use crate::truth::quadrature::gauss_legendre;
 
 /// Cosine-weighted directions and any light of one radiance: a hit with probability F, the form factor.
@@ -18,24 +20,6 @@ pub struct CoaxialDisk {
     pub height: f64,
     /// In the unit of `height`, positive.
     pub radius: f64,
-}
-
-/// How points of a light are chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampled {
-    /// Uniformly per unit area.
-    Area,
-    /// Uniformly per unit solid angle of the cone that the light subtends.
-    Cone,
-}
-
-/// How MIS weighs a cosine-weighted direction against a point of the light (Veach, Guibas 1995).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Heuristic {
-    /// In proportion to the densities.
-    Balance,
-    /// In proportion to their squares.
-    Power,
 }
 
 impl CoaxialDisk {
@@ -64,24 +48,24 @@ impl CoaxialDisk {
 
     /// A point of the light: with t = (radius/height)², (t/3)(1 - (1 + t)⁻³) - F² = F⁴ / (3c²) per area, and
     /// 4 (1 - c)(1 - c³)/3 - F² = (1 - c)⁴/3 per solid angle.
-    pub fn explicit(&self, sampled: Sampled) -> f64 {
+    pub fn explicit(&self, sampled: Points) -> f64 {
         let (c, rest) = self.cosine();
         let square = |x: f64| x * x;
         match sampled {
-            Sampled::Area => square(square(self.mean()) / c) / 3.0,
-            Sampled::Cone => square(square(rest)) / 3.0,
+            Points::Area => square(square(self.mean()) / c) / 3.0,
+            Points::SolidAngle => square(square(rest)) / 3.0,
         }
     }
 
     /// MIS of one cosine-weighted direction and one point of the light. Quadrature, to 1e-12 relative for a radius of
     /// 0.01 to 100 heights.
-    pub fn mis(&self, sampled: Sampled, heuristic: Heuristic) -> f64 {
+    pub fn mis(&self, sampled: Points, heuristic: Heuristic) -> f64 {
         let (c, rest) = self.cosine();
         let t = self.radius / self.height * (self.radius / self.height);
         // π times the light's density per solid angle at direction cosine mu, where that of the other is mu
         let density = |mu: f64| match sampled {
-            Sampled::Area => 1.0 / (t * mu * mu * mu),
-            Sampled::Cone => 0.5 / rest,
+            Points::Area => 1.0 / (t * mu * mu * mu),
+            Points::SolidAngle => 0.5 / rest,
         };
         // mu / density times the weight, for the direction and for the point
         let direction = |mu: f64| match heuristic {

@@ -2,9 +2,9 @@
 
 use super::props::{FLOOR, LE, TILTED, light, setting};
 use super::{Exhibit, Parameter, Series, Theory, by_chance, nothing_missed, one_sample};
-use crate::estimator::{Estimator, Heuristic, Technique};
-use crate::scene::{Directions, Rgb};
-use crate::truth::direct::direct_variance::{self as variance, CoaxialDisk, Sampled};
+use crate::estimator::{Estimator, Technique};
+use crate::scene::{Directions, Points, Rgb};
+use crate::truth::direct::direct_variance::CoaxialDisk;
 
 const HEIGHT: f64 = 1.4;
 
@@ -24,15 +24,10 @@ pub const EXHIBIT: Exhibit = Exhibit {
             let disk = disk(radius);
             let scale = FLOOR * FLOOR * LE * LE;
             let known = match *estimator {
-                Estimator::Explicit(e) if e.technique == Technique::Light => disk.explicit(Sampled::Area),
+                Estimator::Explicit(e) if e.technique == Technique::Light => disk.explicit(Points::Area),
                 Estimator::Explicit(e) if one_sample(&e.roulette) && e.directions == Directions::Cosine => {
                     match e.technique {
-                        Technique::Both(Heuristic::Balance) => {
-                            disk.mis(Sampled::Area, variance::Heuristic::Balance)
-                        }
-                        Technique::Both(Heuristic::Power) => {
-                            disk.mis(Sampled::Area, variance::Heuristic::Power)
-                        }
+                        Technique::Both(heuristic) => disk.mis(Points::Area, heuristic),
                         _ => disk.implicit_cosine(),
                     }
                 }

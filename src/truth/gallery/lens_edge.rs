@@ -3,7 +3,7 @@
 use super::props::{DISTANCE, Frame, LE, half_plane};
 use super::{Exhibit, Parameter, Series, Theory, covered, nothing_missed};
 use crate::scene::camera::Lens;
-use crate::truth::optics::exposure::{self, edge_through_lens_and_pixel};
+use crate::truth::optics::exposure::{blur, edge_through_lens_and_pixel};
 
 const APERTURE: f64 = 0.3;
 /// Where the edge is, in pixels from the middle.
@@ -26,7 +26,7 @@ pub const EXHIBIT: Exhibit = Exhibit {
 };
 
 fn coverage(focus: f64) -> f64 {
-    let blur = exposure::Lens { aperture: APERTURE, focus }.blur(DISTANCE);
+    let disc = blur(&Lens { radius: APERTURE, focus }, DISTANCE);
     let pixel = Frame { lens: None }.pixel();
-    edge_through_lens_and_pixel(EDGE * pixel, blur, pixel)
+    edge_through_lens_and_pixel(EDGE * pixel, disc, pixel)
 }

@@ -1,6 +1,7 @@
 //! Averages over a pixel and a lens, the variance of sampling them, and what they add to the variance of
 //! paths.
 
+use crate::scene::camera::Lens;
 use std::f64::consts::PI;
 
 /// Probability that U + V <= `x`, with U and V independent and uniform on intervals of widths `a` and `b` >=
@@ -87,21 +88,10 @@ pub fn tent_coverage(distance: f64) -> f64 {
     two_boxes(distance, 1.0, 1.0)
 }
 
-/// A thin lens. Lengths in one unit, arbitrary throughout.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lens {
-    /// Radius of the aperture.
-    pub aperture: f64,
-    /// Distance of the plane in focus, > 0.
-    pub focus: f64,
-}
-
-impl Lens {
-    /// Radius, in an object plane at `distance` > 0, of the disc that one image point averages.
-    /// [Potmesil & Chakravarty 1981]
-    pub fn blur(&self, distance: f64) -> f64 {
-        self.aperture * (distance - self.focus).abs() / self.focus
-    }
+/// Radius, in an object plane at `distance` > 0, of the disc that one image point averages.
+/// [Potmesil & Chakravarty 1981]
+pub fn blur(lens: &Lens, distance: f64) -> f64 {
+    lens.radius * (distance - lens.focus).abs() / lens.focus
 }
 
 /// White part of a disc of radius `blur` >= 0 of which everything up to `edge` from its centre is white: an

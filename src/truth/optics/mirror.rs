@@ -3,6 +3,7 @@
 //! The mirror is the plane x = 0, large enough to hold every reflection; floor, light and receiver lie at x >
 //! 0. In it the light appears at -x, unchanged but for its radiance.
 
+use crate::truth::direct::form_factor::disk_parallel;
 use crate::truth::quadrature::{Integral, tensor};
 use std::f64::consts::PI;
 
@@ -106,26 +107,12 @@ impl MirrorWall {
 
     fn form_factor(&self, offset: f64) -> f64 {
         match self.shape {
-            Shape::Disc { radius } => disc(offset, self.height, radius),
+            Shape::Disc { radius } => disk_parallel(offset, self.height, radius),
             Shape::Rectangle { half_x, half_z } => {
                 let corner = |x: f64| rectangle_corner(x / self.height, half_z / self.height);
                 2.0 * (corner(offset + half_x) - corner(offset - half_x))
             }
         }
-    }
-}
-
-/// Form factor from a point to a parallel disc of `radius` at `height` > 0, its centre `offset` to the side.
-/// Relative error below 1e-14. [Howell 2010]
-pub fn disc(offset: f64, height: f64, radius: f64) -> f64 {
-    let outside = offset * offset + height * height - radius * radius;
-    let across = 2.0 * height * radius;
-    let root = libm::hypot(outside, across);
-    // (root - outside) / 2 root, without the difference where it would cancel
-    if outside > 0.0 {
-        0.5 * across * across / (root * (root + outside))
-    } else {
-        0.5 * (1.0 - outside / root)
     }
 }
 
