@@ -31,7 +31,7 @@ fn written_out() -> SceneKind {
     let text = serde_json::json!({ "custom": { "primitives": [{
         "shape": { "sphere": { "center": [0.0, 0.0, 0.0], "radius": 1.0, "axis": [0.0, 0.0, 1.0],
             "low": -1.0, "high": 1.0, "inward": true } },
-        "albedo": [0.5, 0.5, 0.5], "emission": [1.0, 1.0, 1.0] }],
+        "material": { "bsdf": { "lambert": { "albedo": [0.5, 0.5, 0.5] } }, "le": [1.0, 1.0, 1.0] } }],
         "sensor": { "probe": { "origin": [0.1, 0.2, 0.0], "direction": [0.0, 0.0, 1.0] } } } });
     serde_json::from_value(text).unwrap()
 }
@@ -69,6 +69,13 @@ fn the_order() {
     assert_eq!(source(&written_out(), &explicit, &both), Some(Source::Independent));
     assert_eq!(source(&written_out(), &explicit, &both[..1]), Some(Source::Own));
     assert_eq!(source(&written_out(), &explicit, &[]), None);
+    // a deterministic solution stands before all images, which speak of what it does not know
+    let flush = |blocks| SceneKind::CornellFlush { tile: 2, blocks };
+    assert_eq!(source(&flush(false), &explicit, &both), Some(Source::Deterministic));
+    let blocks = Truth::of(&flush(true), &explicit, &both);
+    let source_of = |counted| blocks.mean(0, counted).map(|value| value.source);
+    assert_eq!(source_of(Counted::Only(1)), Some(Source::Deterministic));
+    assert_eq!((source_of(Counted::Only(2)), source_of(Counted::All)), (None, Some(Source::Independent)));
     // the image that comes with the program stands between a user's and our own
     let embedded = Truth::of(&cornell(), &explicit, &both[..1]).mean(0, Counted::All).unwrap();
     assert_eq!(embedded.source, Source::Independent);

@@ -65,7 +65,8 @@ impl Value {
 
 /// What is right for one estimator in one scene.
 pub struct Truth {
-    origin: Option<Origin>,
+    /// Best first; a later one speaks where those before it know nothing.
+    origins: Vec<Origin>,
     property: Property,
     refused: Option<String>,
 }
@@ -86,33 +87,37 @@ impl Truth {
         let embedded = || Reference::of(scene).map(Arc::new);
         let own = || stored.iter().find(|r| made_by(r).is_some_and(|k| k != kind(estimator))).cloned();
         let image = || given().or_else(embedded).or_else(own);
-        let origin = (ClosedForm::of(scene, estimator).map(Origin::ClosedForm))
-            .or_else(|| Deterministic::of(scene).map(Origin::Deterministic))
-            .or_else(|| image().map(Origin::Stored));
-        let same_kind = origin.is_none() && !stored.is_empty();
+        let origins: Vec<Origin> = match ClosedForm::of(scene, estimator) {
+            Some(closed) => vec![Origin::ClosedForm(closed)],
+            None => {
+                let solution = Deterministic::of(scene).map(Origin::Deterministic);
+                solution.into_iter().chain(image().map(Origin::Stored)).collect()
+            }
+        };
+        let same_kind = origins.is_empty() && !stored.is_empty();
         let refused = same_kind.then(|| {
             let kind = kind(estimator);
             format!(
                 "the reference was made by `{kind}`, which it cannot judge: both would share its mistakes"
             )
         });
-        Truth { origin, property: estimator.property(), refused }
+        Truth { origins, property: estimator.property(), refused }
     }
 
     /// Theory of the estimator's moments and cost, where there is one.
     pub fn theory(&self) -> Option<&ClosedForm> {
-        match &self.origin {
-            Some(Origin::ClosedForm(closed)) => Some(closed),
+        self.origins.iter().find_map(|origin| match origin {
+            Origin::ClosedForm(closed) => Some(closed),
             _ => None,
-        }
+        })
     }
 
     /// The stored image that is used.
     pub fn reference(&self) -> Option<&Reference> {
-        match &self.origin {
-            Some(Origin::Stored(reference)) => Some(reference),
+        self.origins.iter().find_map(|origin| match origin {
+            Origin::Stored(reference) => Some(&**reference),
             _ => None,
-        }
+        })
     }
 
     /// Why a reference that there is was not used.
@@ -122,7 +127,34 @@ impl Truth {
 
     /// The right mean: radiance [W m^-2 sr^-1], or irradiance [W m^-2] on a plate. A stored image knows no bounces.
     pub fn mean(&self, channel: usize, counted: Counted) -> Option<Value> {
-        match self.origin.as_ref()? {
+        self.origins.iter().find_map(|origin| origin.mean(channel, counted))
+    }
+
+    /// The mean that this estimator should have: the right one, less what a clamp leaves out. `None` for a clamped
+    /// estimator where the bounces are not known one by one.
+    pub fn expected(&self, channel: usize, counted: Counted) -> Option<Value> {
+        self.origins.iter().find_map(|origin| match (origin, self.property) {
+            (Origin::ClosedForm(closed), _) => {
+                Some(Value::exact(closed.expected(channel, counted), Source::ClosedForm))
+            }
+            (Origin::Deterministic(solution), Property::Clamped { bounces }) => {
+                solution.clamped(channel, counted, bounces)
+            }
+            (Origin::Stored(_), Property::Clamped { .. }) => None,
+            (_, Property::Unbiased) => origin.mean(channel, counted),
+        })
+    }
+
+    /// The right mean over one of `tiles` x `tiles` squares of the image.
+    pub fn tile(&self, x: usize, y: usize, tiles: usize, channel: usize) -> Option<Value> {
+        let reference = self.reference().filter(|r| r.size.is_multiple_of(tiles))?;
+        Some(value(reference, &reference.tile(tiles, x, y), channel))
+    }
+}
+
+impl Origin {
+    fn mean(&self, channel: usize, counted: Counted) -> Option<Value> {
+        match self {
             Origin::ClosedForm(closed) => {
                 Some(Value::exact(closed.truth(channel, counted), Source::ClosedForm))
             }
@@ -132,27 +164,6 @@ impl Truth {
             }
             Origin::Stored(_) => None,
         }
-    }
-
-    /// The mean that this estimator should have: the right one, less what a clamp leaves out. `None` for a clamped
-    /// estimator where the bounces are not known one by one.
-    pub fn expected(&self, channel: usize, counted: Counted) -> Option<Value> {
-        match (self.origin.as_ref()?, self.property) {
-            (Origin::ClosedForm(closed), _) => {
-                Some(Value::exact(closed.expected(channel, counted), Source::ClosedForm))
-            }
-            (Origin::Deterministic(solution), Property::Clamped { bounces }) => {
-                solution.clamped(channel, counted, bounces)
-            }
-            (_, Property::Unbiased) => self.mean(channel, counted),
-            (Origin::Stored(_), Property::Clamped { .. }) => None,
-        }
-    }
-
-    /// The right mean over one of `tiles` x `tiles` squares of the image.
-    pub fn tile(&self, x: usize, y: usize, tiles: usize, channel: usize) -> Option<Value> {
-        let reference = self.reference().filter(|r| r.size.is_multiple_of(tiles))?;
-        Some(value(reference, &reference.tile(tiles, x, y), channel))
     }
 }
 

@@ -59,7 +59,7 @@ fn form_factors_agree_with_quadrature() {
         close(wall.direct(), nested(&wall, 0.2, &|_| 1.0), 1e-9);
         close(wall.image(), nested(&wall, 1.6, &|_| 1.0), 1e-9);
     }
-    // right below the centre, and a small disc far to the side, where differences would cancel
+    // right below the corner
     close(rectangle_corner(1e9, 1e9), 0.25, 1e-8);
     assert_eq!(rectangle_corner(-0.5, 2.0), -rectangle_corner(0.5, 2.0));
 }
