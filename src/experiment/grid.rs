@@ -2,6 +2,7 @@
 
 use super::choices::{self, Choice};
 use super::error::Error;
+use super::making;
 use super::plan::CellPlan;
 use super::spec::{Grid, Spec, Streams};
 use crate::estimator::{Estimate, Estimator, Property, Roulette, Rule};
@@ -75,6 +76,7 @@ fn grid_cells(
                     block: 0,
                     pixels: 0,
                     rays: rays(&scene.choice.value, &built, &whole),
+                    finds_all: making::finds_all(&whole, &built),
                     address: address(spec, &scene.choice.value, &whole),
                 });
             }

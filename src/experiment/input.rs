@@ -230,6 +230,20 @@ pub fn length<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     Ok(v)
 }
 
+/// A refractive index relative to another: finite and positive.
+pub fn relative_index<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let v = f64::deserialize(d)?;
+    check(v > 0.0 && v.is_finite(), v, "a relative refractive index is finite and positive")?;
+    Ok(v)
+}
+
+/// An exponent of a cosine.
+pub fn exponent<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
+    let v = f64::deserialize(d)?;
+    check((0.0..=1e6).contains(&v), v, "an exponent lies in 0 to 1000000")?;
+    Ok(v)
+}
+
 /// More realizations than this are a slip of the finger.
 pub const MOST_SAMPLES: i64 = 1_000_000_000_000_000;
 

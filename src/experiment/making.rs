@@ -8,6 +8,7 @@ use super::grid;
 use super::run::{WAVE_PATHS, block_of};
 use crate::estimator::{Estimate, Estimator, Property};
 use crate::sampling::Address;
+use crate::scene::Scene;
 use crate::scene::library::SceneKind;
 use crate::truth::Own;
 use crate::truth::own::Provenance;
@@ -40,6 +41,13 @@ pub enum Ended {
     Stopped,
 }
 
+/// Whether no light is out of an estimator's reach: points are found by sampling them only, and not behind mirrors or
+/// glass.
+pub fn finds_all(estimator: &Estimator, scene: &Scene) -> bool {
+    let smooth = scene.surfaces().iter().any(|s| s.material.bsdf.is_dirac());
+    scene.points().next().is_none() || (estimator.samples_lights() && !smooth)
+}
+
 /// A reference without samples.
 pub fn begin(scene: &SceneKind, estimator: &Estimator, seed: u64) -> Result<Own, Error> {
     let built = scene.build();
@@ -49,6 +57,10 @@ pub fn begin(scene: &SceneKind, estimator: &Estimator, seed: u64) -> Result<Own,
     }
     if estimator.property() != Property::Unbiased {
         return Err(Error::Refused("a clamped estimator is biased and makes no reference".to_owned()));
+    }
+    if !finds_all(estimator, &built) {
+        let why = "this estimator misses light from the scene's points, so it makes no reference";
+        return Err(Error::Refused(why.to_owned()));
     }
     grid::lit(estimator, &built).and_then(|()| grid::ends(estimator, &built)).map_err(Error::Refused)?;
     let provenance = Provenance::new(scene, estimator, seed);

@@ -36,6 +36,8 @@ pub struct CellPlan {
     pub pixels: u64,
     /// Expected rays a realization: by theory, or an upper bound.
     pub rays: f64,
+    /// Whether no light is out of its reach.
+    pub finds_all: bool,
     /// Where its random streams live.
     pub address: Address,
 }
@@ -43,7 +45,7 @@ pub struct CellPlan {
 impl CellPlan {
     /// Whether its mean is meant to be the right value.
     pub fn is_unbiased(&self) -> bool {
-        self.estimator.property() == Property::Unbiased
+        self.estimator.property() == Property::Unbiased && self.finds_all
     }
 
     /// Expected rays of the whole cell.

@@ -6,7 +6,7 @@ use super::plan::CellPlan;
 use super::row::{Estimand, Row};
 use super::spec::Claim;
 use super::verdict::{MIN_EFFECTIVE, Sheet};
-use crate::estimator::{BINS, Rule};
+use crate::estimator::BINS;
 use crate::stats::{Moments, Question, Verdict};
 use crate::truth::{Counted, Known, Source, Truth, Value};
 
@@ -68,7 +68,7 @@ impl Subject<'_> {
             }
         }
         let claim = sheet.claim(Claim::unbiased);
-        let enough = self.enough(&mut row, channel);
+        let enough = self.enough(&mut row, channel, variance, blocks);
         if !enough && claim.is_some() {
             row.verdict = Some(Verdict::Inconclusive);
         }
@@ -110,10 +110,18 @@ impl Subject<'_> {
         }
     }
 
-    /// Whether there are enough samples for the known skewness.
-    fn enough(&self, row: &mut Row, channel: usize) -> bool {
+    /// Whether there are enough samples for the known skewness, or where that is not known enough paths that count.
+    fn enough(&self, row: &mut Row, channel: usize, variance: Known, blocks: &Moments) -> bool {
         let skewness = self.truth.theory().and_then(|theory| theory.skewness(channel, Counted::All));
-        let Some(skewness) = skewness else { return true };
+        let Some(skewness) = skewness else {
+            let expected = self.truth.expected(channel, Counted::All);
+            let rare = expected.map_or_else(String::new, |e| self.rare(variance, e.value, blocks));
+            if !rare.is_empty() && variance != Known::Infinite {
+                row.note = rare;
+                return false;
+            }
+            return true;
+        };
         let needed = 25.0 * skewness * skewness;
         if (self.cell.cost.n as f64) < needed {
             row.note = format!("skewness {skewness:.0}: a t interval needs {needed:.0} samples");
@@ -163,7 +171,7 @@ impl Subject<'_> {
         sheet.state(row);
         if let (Some((claim, margin)), Some(rays)) = (sheet.claim(Claim::cost), rays) {
             let mut question = Question::about(cost, self.cell.invalid(), rays, margin * rays);
-            question.noise_free = self.plan.estimator.roulette().rule == Rule::None;
+            question.noise_free = self.truth.theory().is_some_and(|theory| theory.rays_are_certain());
             sheet.ask(claim, question);
         }
         for channel in 0..3 {

@@ -54,6 +54,9 @@ fn answer(plan: &Plan, rows: &mut [Row], asked: Vec<Asked>) {
             row.mde = Some(answer.mde).filter(|mde| mde.is_finite());
             row.verdict = Some(answer.verdict);
             row.note = answer.reason;
+            if row.truth.is_some_and(|truth| truth > 0.0 && row.expected_bias == Some(-truth)) {
+                row.note = format!("this estimator cannot find the light {}", row.note).trim_end().to_owned();
+            }
             let undecided = matches!(answer.verdict, Verdict::Pass | Verdict::Inconclusive);
             if let Some(why) =
                 inexact(&asked.question, level).filter(|_| undecided && !row.estimand.is_agreement())

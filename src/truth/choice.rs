@@ -94,7 +94,9 @@ impl Truth {
                 solution.into_iter().chain(image().map(Origin::Stored)).collect()
             }
         };
-        let same_kind = origins.is_empty() && !stored.is_empty();
+        let knows_all =
+            origins.iter().any(|origin| matches!(origin, Origin::ClosedForm(_) | Origin::Stored(_)));
+        let same_kind = !knows_all && !stored.is_empty();
         let refused = same_kind.then(|| {
             let kind = kind(estimator);
             format!(

@@ -2,10 +2,10 @@
 
 use super::Known;
 use super::enclosure::{Counted, Enclosure, Wall, average};
-use super::gallery::{self, Series};
+use super::gallery::{self, Series, Tail};
 use super::moments::Central;
 use super::walk::Walk;
-use crate::estimator::{Estimate, Estimator, Explicit, Property, Technique};
+use crate::estimator::{Estimate, Estimator, Property, Rule, Technique};
 use crate::scene::library::{Patch, SceneKind, Setting, View};
 use crate::scene::{Points, Rgb, Sensor};
 use std::f64::consts::PI;
@@ -25,8 +25,8 @@ enum Theory {
         seen: Vec<f64>,
         /// π for a plate, 1 for a probe.
         response: f64,
-        /// Whether emitters touch what they light.
-        touching: bool,
+        /// How sampled lights scatter.
+        tail: Tail,
     },
     /// From lights to where one looks.
     Series {
@@ -46,13 +46,19 @@ impl ClosedForm {
         let whole = |albedo, emission| [Patch { fraction: 1.0, albedo, emission }];
         let theory = match scene {
             SceneKind::Furnace { albedo, emission, view } => {
-                among(Enclosure::sphere(&whole(*albedo, *emission)), 0, *view, false)
+                among(Enclosure::sphere(&whole(*albedo, *emission)), 0, *view, Tail::None)
             }
             SceneKind::FurnaceBox { albedo, emission, view } => {
-                among(Enclosure::furnace(Wall { albedo: *albedo, le: *emission }), 0, *view, true)
+                // emitters adjoin what they light: index 3/2, averaged over receivers, in every box
+                among(
+                    Enclosure::furnace(Wall { albedo: *albedo, le: *emission }),
+                    0,
+                    *view,
+                    Tail::ByArea(1.5),
+                )
             }
             SceneKind::IntegratingSphere { patches, looks_at, view } => {
-                among(Enclosure::sphere(patches), *looks_at, *view, false)
+                among(Enclosure::sphere(patches), *looks_at, *view, Tail::None)
             }
             SceneKind::Exhibit { name, parameter, setting } => match &gallery::find(name)?.theory {
                 gallery::Theory::Series { mean, missed, variance } => Theory::Series {
@@ -61,8 +67,8 @@ impl ClosedForm {
                     variance: variance(*parameter, estimator),
                     steady: steady(setting, estimator),
                 },
-                gallery::Theory::Chain { enclosure, looks_at, touching } => {
-                    among(enclosure(*parameter), *looks_at, View::Probe, *touching)
+                gallery::Theory::Chain { enclosure, looks_at, tail } => {
+                    among(enclosure(*parameter), *looks_at, View::Probe, *tail)
                 }
             },
             SceneKind::CornellBox { .. }
@@ -132,6 +138,12 @@ impl ClosedForm {
             return Known::Value(0.0);
         }
         match self.moments(channel, counted) {
+            // roulette alone can make it infinite, whatever the lights do
+            Err(Known::Unknown)
+                if counted == Counted::All && self.tail_index(channel).is_some_and(|t| t <= order as f64) =>
+            {
+                Known::Infinite
+            }
             Err(known) => known,
             Ok(moments) => moments.finite_moment(order).map_or(Known::Infinite, Known::Value),
         }
@@ -153,10 +165,16 @@ impl ClosedForm {
         rays.is_finite().then_some(rays)
     }
 
+    /// Whether every realization traces the same number of rays: nothing ends a walk but its clamp.
+    pub fn rays_are_certain(&self) -> bool {
+        let Theory::Enclosure { enclosure, .. } = &self.theory else { return false };
+        self.estimator.roulette().rule == Rule::None && enclosure.never_absorbs()
+    }
+
     /// Index of the power-law tail of one sample; the variance is infinite at or below 2.
     pub fn tail_index(&self, channel: usize) -> Option<f64> {
-        if self.light_touches_walls() {
-            return Some(1.5);
+        if let Some(index) = self.tail_of_lights() {
+            return Some(index);
         }
         let Theory::Enclosure { enclosure, seen, .. } = &self.theory else { return None };
         let on_patches = Walk::new(enclosure, &self.estimator)?.tail_index(channel);
@@ -165,7 +183,7 @@ impl ClosedForm {
     }
 
     fn moments(&self, channel: usize, counted: Counted) -> Result<Central, Known> {
-        if self.light_touches_walls() && counted != Counted::Only(0) {
+        if self.tail_of_lights().is_some() && counted != Counted::Only(0) {
             return Err(Known::Infinite);
         }
         let Theory::Enclosure { enclosure, seen, response, .. } = &self.theory else {
@@ -176,22 +194,29 @@ impl ClosedForm {
         Ok(Central::mixture(seen.iter().copied().zip(moments)).scaled(*response))
     }
 
-    /// Light sampled over an area that adjoins the receiver's wall has a geometry term with tail index 3/2,
-    /// averaged over receivers: infinite variance in every box.
-    fn light_touches_walls(&self) -> bool {
-        let Theory::Enclosure { touching: true, .. } = self.theory else { return false };
-        let area = |e: &Explicit| e.lights.points == Points::Area && e.technique == Technique::Light;
-        matches!(&self.estimator, Estimator::Explicit(e) if area(e)) && self.estimator.roulette().reaches(2)
+    /// Index of the tail that sampled lights bring, of all bounces but emission seen directly.
+    fn tail_of_lights(&self) -> Option<f64> {
+        let (Theory::Enclosure { tail, .. }, Estimator::Explicit(e)) = (&self.theory, &self.estimator) else {
+            return None;
+        };
+        let by_area = e.lights.points == Points::Area;
+        match tail {
+            // multiple importance sampling bounds the weights
+            _ if e.technique != Technique::Light || !e.roulette.reaches(2) => None,
+            Tail::Always(index) => Some(*index),
+            Tail::ByArea(index) if by_area => Some(*index),
+            Tail::ByArea(_) | Tail::None => None,
+        }
     }
 }
 
-fn among(enclosure: Enclosure, looks_at: usize, view: View, touching: bool) -> Theory {
+fn among(enclosure: Enclosure, looks_at: usize, view: View, tail: Tail) -> Theory {
     let probe = |patch| if patch == looks_at { 1.0 } else { 0.0 };
     let (seen, response) = match view {
         View::Probe => ((0..enclosure.patches().len()).map(probe).collect(), 1.0),
         View::Irradiance => (enclosure.seen_from(looks_at).to_vec(), PI),
     };
-    Theory::Enclosure { enclosure, seen, response, touching }
+    Theory::Enclosure { enclosure, seen, response, tail }
 }
 
 /// Whether only one bounce counts, and it comes before `bounce`.

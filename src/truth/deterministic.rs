@@ -49,7 +49,7 @@ impl Default for Solved {
 
 fn key() -> String {
     let blocks = cornell_flush::BLOCKS;
-    format!("{}; direct 1 to {TOLERANCE} under {blocks:?}", radiosity::key())
+    format!("{}; direct 2 to {TOLERANCE} under {blocks:?}", radiosity::key())
 }
 
 fn solved() -> &'static Solved {

@@ -126,6 +126,11 @@ impl Enclosure {
         self.spherical
     }
 
+    /// Whether light goes on from everywhere: no patch is black, and none sees the void.
+    pub fn never_absorbs(&self) -> bool {
+        self.patches.iter().all(|p| p.albedo != Rgb::ZERO) && self.sees.iter().all(|row| is_closed(row))
+    }
+
     /// Whether all patches have the same albedo.
     pub fn has_one_albedo(&self) -> bool {
         self.patches.iter().all(|p| p.albedo == self.patches[0].albedo)
@@ -133,8 +138,7 @@ impl Enclosure {
 
     /// Whether all rays meet the same material.
     pub fn is_furnace(&self) -> bool {
-        let closed = |row: &Vec<f64>| row.iter().sum::<f64>() >= 1.0 - LOST;
-        self.patches.iter().all(|p| *p == self.patches[0]) && self.sees.iter().all(closed)
+        self.patches.iter().all(|p| *p == self.patches[0]) && self.sees.iter().all(|row| is_closed(row))
     }
 
     /// P_ij, each times a weight for going from a patch to number j.
@@ -166,4 +170,9 @@ impl Enclosure {
 /// The sum of values weighted by probabilities; what has probability 0 may be infinite.
 pub fn average(probabilities: &[f64], values: &[f64]) -> f64 {
     probabilities.iter().zip(values).filter(|(p, _)| **p > 0.0).map(|(p, v)| p * v).sum()
+}
+
+/// Whether a row of the chain sees nothing but patches.
+fn is_closed(row: &[f64]) -> bool {
+    row.iter().sum::<f64>() >= 1.0 - LOST
 }

@@ -50,11 +50,10 @@ fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect("plain numbers and names have a JSON form")
 }
 
-/// What an estimator is called whatever its parameters: `implicit`, `explicit`, `recursive`.
-pub fn kind(estimator: &Estimator) -> String {
-    let value = serde_json::to_value(estimator).expect("plain numbers and names have a JSON form");
-    let name = value.as_object().and_then(|variant| variant.keys().next());
-    name.expect("an estimator's JSON form is a table of one name").clone()
+/// What estimators are called that share their mistakes: those that sample lights, and those that wait for chance,
+/// be it with one walk or with many.
+pub fn kind(estimator: &Estimator) -> &'static str {
+    if estimator.samples_lights() { "explicit" } else { "implicit" }
 }
 
 /// A reference of our own, with the state that further samples can be added to.

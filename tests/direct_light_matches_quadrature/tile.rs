@@ -102,7 +102,8 @@ fn a_penumbra_across_the_tile_matches_quadrature_between_its_kinks() {
         for tolerance in [1e-4, 1e-5] {
             let (value, error) = mean(&corners(0), &light(), &[Blocker::plate(&plate)], tolerance);
             close(value, wanted, error);
-            assert!(error <= (tolerance + 1.01e-6) * wanted, "{edge} {tolerance:e} {error:e}");
+            let most = tolerance * wanted + 1.01e-6 * empty_box()[0];
+            assert!(error <= most, "{edge} {tolerance:e} {error:e}");
         }
     }
 }
@@ -116,7 +117,7 @@ fn the_cornell_box_with_blocks() {
     for (tile, known) in (0..6).zip(KNOWN) {
         let (value, error) = direct(tile, 1e-5);
         close(value, known, error);
-        assert!(error <= 1.11e-5 * known);
+        assert!(error <= 1e-5 * known + 1.01e-6 * empty_box()[tile]);
     }
     // what the blocks cannot hide
     let empty = empty_box();

@@ -126,8 +126,10 @@ fn sensor(spec: SensorSpec) -> Result<Sensor, String> {
         SensorSpec::Camera { direction, up, .. } if direction.cross(up).length() < 1e-9 => {
             return Err("a camera's up must not be parallel to its direction".to_owned());
         }
-        SensorSpec::Camera { lens: Some(lens), .. } if !(lens.radius > 0.0 && lens.focus > 0.0) => {
-            return Err("a lens has a radius and a focus above 0".to_owned());
+        SensorSpec::Camera { lens: Some(lens), .. }
+            if !(lens.radius * lens.focus > 0.0 && (lens.radius + lens.focus).is_finite()) =>
+        {
+            return Err("a lens has a finite radius and a finite focus above 0".to_owned());
         }
         SensorSpec::Camera { origin, direction, up, fov, resolution, lens } => {
             let pinhole = Camera::pinhole(origin, direction, up, fov, (resolution, resolution));

@@ -67,7 +67,7 @@ pub enum BsdfSpec {
     /// A clear interface, seen from both sides.
     Dielectric {
         /// Refractive index behind it, relative to the one in front.
-        #[serde(deserialize_with = "input::length")]
+        #[serde(deserialize_with = "input::relative_index")]
         ior: f64,
     },
 }
@@ -99,8 +99,8 @@ pub enum SkySpec {
         /// Radiance from straight above.
         #[serde(deserialize_with = "input::radiance")]
         radiance: Rgb,
-        /// Exponent, above 0.
-        #[serde(deserialize_with = "input::length")]
+        /// Exponent, 0 or above.
+        #[serde(deserialize_with = "input::exponent")]
         exponent: f64,
         /// Where it is brightest.
         #[serde(deserialize_with = "input::direction")]

@@ -13,7 +13,7 @@ const FIRST: f64 = 1.0 / 32.0;
 /// Refinement ends here at the latest.
 const MOST_TRIANGLES: usize = 50_000;
 
-/// Relative error from bits of shadow that fall between the points of the first mesh and are nowhere looked for:
+/// Error, relative to the mean without blockers, from bits of shadow that fall between the points of the first mesh and are nowhere looked for:
 /// 4e-8 on the tiles of the Cornell box, as a first mesh twice as fine shows; 3e-7 along a straight shadow border
 /// parallel to the mesh.
 const UNSEEN: f64 = 1e-6;
@@ -24,20 +24,22 @@ const UNSEEN: f64 = 1e-6;
 /// blocker stands counts as dark. The integrand jumps there, so the mesh is aligned to it; elsewhere it is continuous
 /// with kinks at the borders of penumbrae, to which the mesh is refined: triangles with errors above average are
 /// quartered until the sum of all errors is below `tolerance` times the mean. The error is that sum of absolute local
-/// errors, likely too large, and 1e-6 of the mean more for bits of shadow much smaller than the tile.
+/// errors, likely too large, and 1e-6 of the mean without blockers more for bits of shadow or light much smaller than
+/// the tile.
 pub fn mean(tile: &[DVec3], light: &[DVec3], blockers: &[Blocker], tolerance: f64) -> (f64, f64) {
     let area = vector_area(tile);
     let normal = area.normalize();
     let value = |p| visible_fraction(p, normal, light, blockers);
     let step = longest_side(tile) * FIRST;
     let pieces = exposed(tile, blockers);
+    let unhidden = unhidden(&pieces, normal, light, step);
     let first = pieces.iter().flat_map(|piece| fan(piece)).flat_map(|corners| refine(corners, step));
     let mut triangles: BinaryHeap<Triangle> = first.map(|corners| Triangle::new(corners, &value)).collect();
     loop {
         let (sum, error) =
             triangles.iter().fold((0.0, 0.0), |(sum, error), t| (sum + t.integral, error + t.error));
         if error <= tolerance * sum || triangles.len() > MOST_TRIANGLES {
-            return (sum / area.length(), (error + UNSEEN * sum) / area.length());
+            return (sum / area.length(), (error + UNSEEN * unhidden) / area.length());
         }
         let average = error / triangles.len() as f64;
         while triangles.peek().is_some_and(|worst| worst.error >= average) {
@@ -45,6 +47,16 @@ pub fn mean(tile: &[DVec3], light: &[DVec3], blockers: &[Blocker], tolerance: f6
             triangles.extend(quarters(&worst.corners).map(|corners| Triangle::new(corners, &value)));
         }
     }
+}
+
+/// Integral over the pieces of what they would see without blockers, by the midpoint rule of the first mesh.
+fn unhidden(pieces: &[Vec<DVec3>], normal: DVec3, light: &[DVec3], step: f64) -> f64 {
+    let parts = pieces.iter().flat_map(|piece| fan(piece)).flat_map(|corners| refine(corners, step));
+    let seen = |[a, b, c]: [DVec3; 3]| {
+        let area = 0.5 * (b - a).cross(c - a).length();
+        area * visible_fraction((a + b + c) / 3.0, normal, light, &[])
+    };
+    parts.map(seen).sum()
 }
 
 /// A part of the tile and what is known of the integral over it.

@@ -2,6 +2,7 @@
 
 use super::props::{LE, Place, UPRIGHT, light, of, setting};
 use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
+use crate::estimator::Rule;
 use crate::scene::{Bsdf, Rgb, Sensor};
 use crate::truth::optics::interface::Slab;
 
@@ -41,6 +42,12 @@ pub const EXHIBIT: Exhibit = Exhibit {
             Series::finite(bounces)
         },
         missed: nothing_missed,
-        variance: |_, _| None,
+        variance: |ior, estimator| {
+            let slab = Slab::new(0.8, ior);
+            let of = |c: usize| slab.variance(BEHIND[c], LE[c]);
+            // a clamp cuts off what goes to and fro for long
+            let all = estimator.roulette().rule == Rule::None && estimator.roulette().reaches(40);
+            all.then(|| Rgb::new(of(0), of(1), of(2)))
+        },
     },
 };

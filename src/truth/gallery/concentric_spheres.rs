@@ -1,7 +1,7 @@
 //! The space between two concentric spheres, both of which glow: a Markov chain of two patches.
 
 use super::props::{TILTED, glowing, setting};
-use super::{Exhibit, Parameter, Theory};
+use super::{Exhibit, Parameter, Tail, Theory};
 use crate::scene::{Rgb, Sensor};
 use crate::truth::{Enclosure, Wall};
 
@@ -26,6 +26,6 @@ pub const EXHIBIT: Exhibit = Exhibit {
     theory: Theory::Chain {
         enclosure: |radius| Enclosure::concentric(OUTSIDE, INSIDE, radius * radius),
         looks_at: 1,
-        touching: false,
+        tail: Tail::None,
     },
 };

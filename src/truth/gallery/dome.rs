@@ -1,7 +1,7 @@
 //! A dome over its floor: the part of a sphere above a plane, and the plane.
 
 use super::props::{TILTED, glowing, setting};
-use super::{Exhibit, Parameter, Theory};
+use super::{Exhibit, Parameter, Tail, Theory};
 use crate::scene::geometry::Disk;
 use crate::scene::{Rgb, Sensor, Shape};
 use crate::truth::{Enclosure, Wall};
@@ -34,6 +34,6 @@ pub const EXHIBIT: Exhibit = Exhibit {
     theory: Theory::Chain {
         enclosure: |fraction| Enclosure::cap(FLOOR, VAULT, fraction),
         looks_at: 1,
-        touching: true,
+        tail: Tail::Always(1.5),
     },
 };

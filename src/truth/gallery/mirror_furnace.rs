@@ -26,13 +26,15 @@ pub const EXHIBIT: Exhibit = Exhibit {
         variance: |r, estimator| {
             let roulette = estimator.roulette();
             let m = LE / (1.0 - r);
-            match roulette.rule {
-                Rule::None => Some(Rgb::ZERO),
-                Rule::Constant { q } if roulette.from == 0 && roulette.clamp.is_none() && q > r * r => {
-                    Some(m * m * (r * r * (1.0 - q) / (q - r * r)))
-                }
-                _ => None,
-            }
+            let q = match roulette.rule {
+                Rule::None => return Some(Rgb::ZERO),
+                Rule::Constant { q } => q,
+                Rule::Albedo => r,
+                Rule::Throughput { .. } => return None,
+            };
+            let known = roulette.from == 0 && roulette.clamp.is_none() && r > 0.0;
+            let variance = if q > r * r { r * r * (1.0 - q) / (q - r * r) } else { f64::INFINITY };
+            known.then(|| m * m * variance)
         },
     },
 };

@@ -83,7 +83,7 @@ pub enum Theory {
         mean: fn(f64) -> Series,
         /// The part of it that an estimator has no way to find.
         missed: fn(f64, &Estimator) -> Option<Series>,
-        /// Variance of one sample, where it is known.
+        /// Variance of one sample, where it is known; it may be infinite.
         variance: fn(f64, &Estimator) -> Option<Rgb>,
     },
     /// As a Markov chain of patches.
@@ -92,9 +92,20 @@ pub enum Theory {
         enclosure: fn(f64) -> Enclosure,
         /// The patch that the probe looks at.
         looks_at: usize,
-        /// Whether lights touch what they light, so that sampling them by area has no variance.
-        touching: bool,
+        /// How sampled lights scatter.
+        tail: Tail,
     },
+}
+
+/// Whether light sampled on emitters has a power-law tail, and its index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tail {
+    /// It has none.
+    None,
+    /// Where points are uniform over area; by solid angle there is none.
+    ByArea(f64),
+    /// Always: the emitters' shapes have no map by solid angle.
+    Always(f64),
 }
 
 /// A number that a scene depends on.

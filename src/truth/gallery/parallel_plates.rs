@@ -1,7 +1,7 @@
 //! Two parallel plates without end, both of which glow.
 
 use super::props::{UPRIGHT, glowing, setting};
-use super::{Exhibit, Parameter, Theory};
+use super::{Exhibit, Parameter, Tail, Theory};
 use crate::scene::Rgb;
 use crate::truth::{Enclosure, Wall};
 
@@ -27,8 +27,8 @@ pub const EXHIBIT: Exhibit = Exhibit {
             Enclosure::plates(lower, upper)
         },
         looks_at: 0,
-        // sampled by area, so large a light has no variance to speak of
-        touching: true,
+        // G falls as 1/d⁴ over a plane: index 1/2, up to values as large as the plane is
+        tail: Tail::ByArea(0.5),
     },
 };
 

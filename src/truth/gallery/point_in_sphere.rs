@@ -33,8 +33,8 @@ pub const EXHIBIT: Exhibit = Exhibit {
                 Rule::Constant { q } if sampled_by_cosine(e) && e.roulette.from == 0 => q,
                 _ => return None,
             };
-            let finite = e.roulette.clamp.is_none() && q > ALBEDO.max_element() * ALBEDO.max_element();
-            finite.then(|| Rgb::from_array([0, 1, 2].map(|c| sphere(offset, c).explicit_variance(q))))
+            let variance = || Rgb::from_array([0, 1, 2].map(|c| sphere(offset, c).explicit_variance(q)));
+            e.roulette.clamp.is_none().then(variance)
         },
     },
 };

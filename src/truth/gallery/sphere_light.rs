@@ -2,7 +2,9 @@
 
 use super::props::{FLOOR, LE, TILTED, light, setting};
 use super::{Exhibit, Parameter, Series, Theory, by_chance, nothing_missed};
-use crate::scene::Rgb;
+use crate::estimator::{Estimator, Technique};
+use crate::scene::{Points, Rgb};
+use crate::truth::direct::direct_variance::sphere_cone;
 use crate::truth::direct::form_factor;
 
 const RADIUS: f64 = 0.4;
@@ -19,7 +21,15 @@ pub const EXHIBIT: Exhibit = Exhibit {
     theory: Theory::Series {
         mean: |height| Series::finite(vec![Rgb::ZERO, FLOOR * LE * form_factor(height)]),
         missed: nothing_missed,
-        variance: |height, estimator| by_chance(estimator, form_factor(height), FLOOR, LE),
+        variance: |height, estimator| match estimator {
+            Estimator::Explicit(e) if e.technique == Technique::Light => {
+                let distance = TILTED.along(0.7, -0.4, height).length();
+                let whole = e.lights.points == Points::SolidAngle && height >= RADIUS;
+                let scale = FLOOR * FLOOR * LE * LE;
+                whole.then(|| scale * sphere_cone(distance, RADIUS, height / distance))
+            }
+            _ => by_chance(estimator, form_factor(height), FLOOR, LE),
+        },
     },
 };
 

@@ -2,13 +2,13 @@
 //! that sampling lights finds nothing and continued rays must find all.
 
 use super::props::{FLOOR, LE, UPRIGHT, matte, of, under};
-use super::{Exhibit, Parameter, Series, Theory, nothing_missed};
+use super::{Exhibit, Parameter, Series, Theory, cosine_without_roulette, nothing_missed};
 use crate::scene::{Bsdf, Rgb, Sky};
-use crate::truth::optics::interface::{dielectric, diffuse_external, diffuse_internal};
+use crate::truth::optics::interface::{FloorUnderLayer, dielectric, diffuse_external, diffuse_internal};
 
 /// Cosine at which the water is looked at.
 const COS: f64 = 12.0 / 13.0;
-/// Visits to the floor that are written out: what follows is below 1e-15 of the whole.
+/// Visits to the floor that are written out: what follows is below 1e-12 of the whole.
 const VISITS: usize = 80;
 
 /// A pool under an overcast sky.
@@ -34,6 +34,13 @@ pub const EXHIBIT: Exhibit = Exhibit {
             Series::finite(bounces)
         },
         missed: nothing_missed,
-        variance: |_, _| None,
+        variance: |ior, estimator| {
+            let of = |c: usize| {
+                let floor = FloorUnderLayer { n: ior, albedo: FLOOR[c], sky: LE[c] };
+                floor.second_moment(COS) - floor.radiance(COS) * floor.radiance(COS)
+            };
+            let all = cosine_without_roulette(estimator) && estimator.roulette().reaches(2 * VISITS as u32);
+            all.then(|| Rgb::new(of(0), of(1), of(2)))
+        },
     },
 };
