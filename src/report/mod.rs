@@ -1,11 +1,13 @@
 //! From verdicts to things to read: CSV, figures, images, a page. Samples nothing.
 
 pub mod answer;
+mod axes;
 mod compare;
 mod curves;
 pub mod difference;
 mod family;
 pub mod figure;
+mod forest;
 pub mod images;
 pub mod lookup;
 pub mod mitsuba;
