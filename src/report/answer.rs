@@ -2,6 +2,7 @@
 //! and whether the claims hold.
 
 use super::lookup::Lookup;
+use super::{compare, family, number};
 use crate::experiment::row::CHANNELS;
 use crate::experiment::spec::Claim;
 use crate::experiment::{CellPlan, Estimand, Row};
@@ -11,11 +12,27 @@ use crate::truth::best_constant_q;
 /// One sentence on each thing that the experiment shows.
 pub fn sentences(lookup: &Lookup<'_>) -> Vec<String> {
     let mut sentences = Vec::new();
+    let mut rules: Vec<(String, Vec<String>, String)> = Vec::new();
     for group in groups(lookup, |a, b| a.scene == b.scene && a.estimator_label == b.estimator_label) {
-        sentences.extend(best_rule(lookup, &group));
+        let cell = &lookup.plan.cells[group[0]];
+        let (scene, estimator) = (&cell.scene_label, cell.estimator_label.clone());
+        let same = |rule: &str| rules.iter().position(|known| known.0 == *scene && known.2 == rule);
+        if let Some(rule) = best_rule(lookup, &group) {
+            match same(&rule) {
+                Some(known) => rules[known].1.push(estimator),
+                None => rules.push((scene.clone(), vec![estimator], rule)),
+            }
+        }
         sentences.extend(clamp(lookup, &group));
     }
-    sentences.extend(gain(lookup));
+    let told = |(scene, names, rule): (String, Vec<String>, String)| {
+        format!("{scene}, {}: the most efficient unbiased rule tried is {rule}.", number::list(&names, "and"))
+    };
+    sentences.splice(0..0, rules.into_iter().map(told));
+    let families = family::families(lookup);
+    sentences.extend(families.iter().filter_map(|family| compare::gain(lookup, family)));
+    sentences.extend(families.iter().flat_map(|family| compare::missed(lookup, family)));
+    sentences.extend(truths(lookup));
     sentences.push(claims(lookup));
     sentences
 }
@@ -37,7 +54,7 @@ fn subject(cell: &CellPlan) -> String {
     format!("{}, {}", cell.scene_label, cell.estimator_label)
 }
 
-/// The most efficient of a group's unbiased rules.
+/// The most efficient of a group's unbiased rules, channel by channel unless all agree.
 fn best_rule(lookup: &Lookup<'_>, group: &[usize]) -> Option<String> {
     let fit = |&c: &usize| {
         let wrong = matches!(lookup.verdict(c), Some(Verdict::Fail | Verdict::Invalid));
@@ -47,7 +64,6 @@ fn best_rule(lookup: &Lookup<'_>, group: &[usize]) -> Option<String> {
     if candidates.len() < 2 {
         return None;
     }
-    let subject = subject(&lookup.plan.cells[candidates[0]]);
     if lookup.is_image(candidates[0]) {
         let by = |estimand, what: &str| {
             let efficiency = |c| Some(lookup.efficiency(c, estimand)?.0);
@@ -58,15 +74,19 @@ fn best_rule(lookup: &Lookup<'_>, group: &[usize]) -> Option<String> {
             by(Estimand::PixelVariance, "the variance averaged over pixels"),
         ];
         let kinds: Vec<String> = kinds.into_iter().flatten().collect();
-        return Some(format!("{subject}: the most efficient unbiased rule is {}.", kinds.join(", and ")));
+        return Some(kinds.join(", and "));
     }
     let of_channel = |channel: usize| {
         let efficiency = |c: usize| lookup.row(c, Estimand::Mean, Some(channel))?.efficiency;
         let (label, cell) = most_efficient(lookup, &candidates, &efficiency)?;
-        Some(format!("{} {label}{}", CHANNELS[channel], theory(&lookup.plan.cells[cell], channel)))
+        Some((CHANNELS[channel], format!("{label}{}", theory(&lookup.plan.cells[cell], channel))))
     };
-    let best: Vec<String> = (0..3).filter_map(of_channel).collect();
-    Some(format!("{subject}: the most efficient unbiased rule tried is {}.", best.join("; ")))
+    let best: Vec<(&str, String)> = (0..3).filter_map(of_channel).collect();
+    let first = &best.first()?.1;
+    if best.iter().all(|(_, rule)| rule == first) {
+        return Some(first.clone());
+    }
+    Some(best.iter().map(|(channel, rule)| format!("{channel} {rule}")).collect::<Vec<_>>().join("; "))
 }
 
 /// The cell of the highest efficiency: its label and number.
@@ -111,30 +131,55 @@ fn clamp(lookup: &Lookup<'_>, group: &[usize]) -> Option<String> {
         .flatten()
 }
 
-/// How much more efficient explicit is than implicit under the same rule.
-fn gain(lookup: &Lookup<'_>) -> Vec<String> {
-    let cells = &lookup.plan.cells;
-    let pairs = groups(lookup, |a, b| {
-        a.scene == b.scene && a.roulette_label == b.roulette_label && a.params == b.params && a.is_unbiased()
-    });
-    let sentence = |group: &Vec<usize>| {
-        let of = |name: &str| group.iter().copied().find(|&c| cells[c].estimator_label == name);
-        let (implicit, explicit) = (of("implicit")?, of("explicit")?);
-        let estimand = if lookup.is_image(implicit) { Estimand::PixelVariance } else { Estimand::Mean };
-        let (slow, fast) = (lookup.efficiency(implicit, estimand)?, lookup.efficiency(explicit, estimand)?);
-        let ratio = fast.0 / slow.0;
-        let relative = |(value, error): (f64, Option<f64>)| error.unwrap_or(f64::NAN) / value;
-        let error = ratio * relative(slow).hypot(relative(fast));
-        let label = lookup.plan.rule_label(&cells[implicit]);
-        let scene = &cells[implicit].scene_label;
-        Some(format!(
-            "{scene}, {label}: explicit is {ratio:.3} ± {error:.3} times as efficient as implicit, all channels added."
-        ))
+/// Questions that were asked against truths of one source.
+struct Asked<'a> {
+    source: &'a str,
+    passed: usize,
+    asked: usize,
+    /// Scenes where not all of them passed.
+    open: Vec<&'a str>,
+}
+
+/// All judged questions by the source of their truth.
+fn by_source<'a>(lookup: &Lookup<'a>) -> Vec<Asked<'a>> {
+    let rows = (0..lookup.plan.cells.len()).flat_map(|c| lookup.cell(c).iter().copied());
+    let mut sources: Vec<Asked<'a>> = Vec::new();
+    for row in rows.filter(|row| row.verdict.is_some() && !row.source.is_empty()) {
+        let scene = lookup.plan.cells[row.cell].scene_label.as_str();
+        let at = sources.iter().position(|known| known.source == row.source).unwrap_or_else(|| {
+            sources.push(Asked { source: row.source, passed: 0, asked: 0, open: Vec::new() });
+            sources.len() - 1
+        });
+        let of = &mut sources[at];
+        of.asked += 1;
+        let passed = row.verdict == Some(Verdict::Pass);
+        of.passed += usize::from(passed);
+        if !passed && !of.open.contains(&scene) {
+            of.open.push(scene);
+        }
+    }
+    sources
+}
+
+/// How the questions ended, truth by truth; the last sentence says it where there is only one kind.
+fn truths(lookup: &Lookup<'_>) -> Vec<String> {
+    let sources = by_source(lookup);
+    let told = |Asked { source, passed, asked, open }: &Asked<'_>| {
+        let rest = if open.is_empty() { String::new() } else { format!("; not all in {}", open.join(", ")) };
+        format!("Against {}: {passed} of {asked} questions passed{rest}.", source_name(source))
     };
-    let sentences: Vec<String> = pairs.iter().filter_map(sentence).collect();
-    // a sweep over rules has its own answer
-    let rules = lookup.plan.swept.iter().any(|name| name == "q");
-    if rules { Vec::new() } else { sentences }
+    if sources.len() < 2 { Vec::new() } else { sources.iter().map(told).collect() }
+}
+
+/// A truth's source as a sentence names it.
+fn source_name(source: &str) -> &str {
+    match source {
+        "closed form" => "closed forms",
+        "deterministic" => "deterministic solutions",
+        "independent renderer" => "images of an independent renderer",
+        "own reference" => "references of our own by another kind of estimator",
+        other => other,
+    }
 }
 
 fn claims(lookup: &Lookup<'_>) -> String {
@@ -146,9 +191,18 @@ fn claims(lookup: &Lookup<'_>) -> String {
         return "Nothing was judged.".to_owned();
     }
     let alpha: f64 = plan.spec.claim.iter().map(Claim::alpha).sum();
+    let sources = by_source(lookup);
+    let (against, open) = match sources.as_slice() {
+        [only] if only.open.is_empty() => (format!(" against {}", source_name(only.source)), String::new()),
+        [only] => {
+            let open = format!(" Not all passed in {}.", only.open.join(", "));
+            (format!(" against {}", source_name(only.source)), open)
+        }
+        _ => (String::new(), String::new()),
+    };
     format!(
-        "Of {judged} questions {} passed, {} failed, {} stayed inconclusive and {} were invalid; were all well, \
-         any false alarm among them had a probability of at most {alpha:.4}.",
+        "Of {judged} questions{against} {} passed, {} failed, {} stayed inconclusive and {} were invalid; were all well, \
+         any false alarm among them had a probability of at most {alpha:.4}.{open}",
         count(Verdict::Pass),
         count(Verdict::Fail),
         count(Verdict::Inconclusive),

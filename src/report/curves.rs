@@ -1,5 +1,6 @@
 //! Curves over a swept parameter: which cells belong together, what was measured, what theory says.
 
+use super::family::scene_at;
 use super::figure::{Colour, Mark, Point, Region};
 use super::lookup::Lookup;
 use super::plots::Z_BAR;
@@ -11,6 +12,9 @@ use crate::truth::{ClosedForm, Counted, Known, Optimum, best_constant_q};
 
 /// Colours of red, green and blue that colour-blind readers tell apart.
 pub const CHANNEL_COLOURS: [Colour; 3] = [Colour::Vermilion, Colour::Green, Colour::Blue];
+
+/// Steps of theory's curve over a parameter of the scene.
+const BETWEEN: u32 = 48;
 
 /// One curve of a panel.
 pub struct Curve {
@@ -142,13 +146,13 @@ pub fn measured(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, paramete
                 (100.0 * zeros.mean, 100.0 * error)
             }
         };
-        let noise_free = quantity == Quantity::Variance && mean.note == "noise-free";
+        let noise_free = quantity == Quantity::Variance && lookup.is_noise_free(cell);
         (!noise_free).then(|| Point::between(x, y, y - Z_BAR * error, y + Z_BAR * error))
     };
     curve.cells.iter().filter_map(point).collect()
 }
 
-/// Theory's curve: dense over q, at the measured points for other parameters.
+/// Theory's curve: dense where the parameter can have any value, else at the measured points.
 pub fn theory(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, parameter: &str) -> Vec<Point> {
     let plan = |cell: usize| &lookup.plan.cells[cell];
     let at = |x: f64, cell: &CellPlan, estimator: &Estimator| {
@@ -156,19 +160,39 @@ pub fn theory(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, parameter:
         let last = last_bounce(cell).map(|bin| bin as u32);
         Some(Point::new(x, predicted(&closed, quantity, curve.channel, last)?))
     };
-    if parameter != "q" {
-        let point = |&cell: &usize| at(value(lookup, cell, parameter), plan(cell), &plan(cell).estimator);
-        return curve.cells.iter().filter_map(point).collect();
-    }
     let first = plan(curve.cells[0]);
-    let lowest = curve.cells.iter().map(|&c| value(lookup, c, "q")).fold(1.0, f64::min);
-    let highest = curve.cells.iter().map(|&c| value(lookup, c, "q")).fold(0.0, f64::max);
+    let values = || curve.cells.iter().map(|&c| value(lookup, c, parameter));
+    let (lowest, highest) =
+        (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    if parameter != "q" {
+        let measured = |&cell: &usize| at(value(lookup, cell, parameter), plan(cell), &plan(cell).estimator);
+        let mut points: Vec<Point> = curve.cells.iter().filter_map(measured).collect();
+        let between = |x: f64| {
+            at(
+                x,
+                &CellPlan { scene: scene_at(&first.scene, parameter, x)?, ..first.clone() },
+                &first.estimator,
+            )
+        };
+        points.extend(spread(lowest, highest).filter_map(between));
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        return points;
+    }
     let steps = 240;
     let q = |i: u32| lowest + (highest - lowest) * f64::from(i) / f64::from(steps);
     // a curve that runs to infinity would leave no room for the rest
     let infinite = optimum_of(lookup, curve).map_or(0.0, |(_, optimum)| optimum.infinite_up_to);
     let finite = |&i: &u32| quantity == Quantity::Cost || q(i) > infinite + 0.004 || infinite == 0.0;
     (0..=steps).filter(finite).filter_map(|i| at(q(i), first, &with_q(&first.estimator, q(i)))).collect()
+}
+
+/// Values between two: in equal ratios where both are above 0, else in equal steps.
+fn spread(lowest: f64, highest: f64) -> impl Iterator<Item = f64> {
+    let ratio = highest / lowest;
+    (1..BETWEEN).map(move |i| {
+        let share = f64::from(i) / f64::from(BETWEEN);
+        if lowest > 0.0 { lowest * libm::pow(ratio, share) } else { lowest + (highest - lowest) * share }
+    })
 }
 
 /// The same estimator with another constant q.

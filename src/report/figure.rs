@@ -59,6 +59,8 @@ pub struct Panel {
     pub marks: Vec<Mark>,
     /// The data, later series above earlier ones.
     pub series: Vec<Series>,
+    /// Lay the panel on its side even if the labels of its categories would fit beside one another.
+    pub lying: bool,
 }
 
 /// An axis of a panel.

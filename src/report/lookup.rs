@@ -41,6 +41,28 @@ impl<'a> Lookup<'a> {
         self.plan.cells[cell].pixels > 1
     }
 
+    /// What theory expects a cell to leave out, relative to the truth, in the channels that have light.
+    pub fn expected_shares(&self, cell: usize) -> Vec<f64> {
+        let rows = (0..3).filter_map(|c| self.row(cell, Estimand::Mean, Some(c)));
+        rows.filter_map(|r| Some(r.expected_bias? / r.truth.filter(|&truth| truth != 0.0)?)).collect()
+    }
+
+    /// Whether a cell's mean should be the right value: no clamp cuts light there, and there is a way to all of it.
+    pub fn finds_all(&self, cell: usize) -> bool {
+        let shares = self.expected_shares(cell);
+        match shares.is_empty() {
+            true => self.plan.cells[cell].is_unbiased(),
+            false => shares.iter().all(|share| share.abs() < 1e-9),
+        }
+    }
+
+    /// Whether all samples of a cell are alike.
+    pub fn is_noise_free(&self, cell: usize) -> bool {
+        let steady =
+            |c| self.row(cell, Estimand::Mean, Some(c)).is_some_and(|r| r.note.starts_with("noise-free"));
+        (0..3).all(steady)
+    }
+
     /// Indices of the finished cells of a scene.
     pub fn of_scene(&self, scene: &str) -> Vec<usize> {
         let cells = 0..self.plan.cells.len();

@@ -1,12 +1,17 @@
 //! From verdicts to things to read: CSV, figures, images, a page. Samples nothing.
 
 pub mod answer;
+mod axes;
+mod compare;
 mod curves;
 pub mod difference;
+mod family;
 pub mod figure;
+mod forest;
 pub mod images;
 pub mod lookup;
 pub mod mitsuba;
+mod number;
 mod page;
 pub mod plots;
 mod summary;

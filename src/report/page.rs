@@ -78,7 +78,7 @@ pub fn page(lookup: &Lookup<'_>, answer: &[String], figures: &[Drawn], pictures:
 
 fn claims(lookup: &Lookup<'_>) -> Markup {
     let about = |claim: &Claim| match claim {
-        Claim::Unbiased(l) => ("mean", l.scene.clone(), l.margin),
+        Claim::Unbiased(l) => ("mean and each bounce", l.scene.clone(), l.margin),
         Claim::Tiles(l) => ("means of the image's 4 × 4 tiles", l.scene.clone(), l.margin),
         Claim::Variance(l) => ("variance", l.scene.clone(), l.margin),
         Claim::Cost(l) => ("rays a sample", l.scene.clone(), l.margin),
@@ -92,7 +92,13 @@ fn claims(lookup: &Lookup<'_>) -> Markup {
                 @let (what, scope, margin) = about(claim);
                 li {
                     (what) @if let Some(scope) = scope { " (" (scope) ")" }
-                    ": equivalent within " (100.0 * margin) " %, any false alarm with probability at most " (claim.alpha())
+                    @match asked(lookup, claim) {
+                        0 => ": nothing could be asked (the numbers below say why)",
+                        count => {
+                            ": " (count) " questions, equivalent within " (100.0 * margin)
+                            " %, any false alarm with probability at most " (claim.alpha())
+                        }
+                    }
                 }
             }
         }
@@ -101,9 +107,27 @@ fn claims(lookup: &Lookup<'_>) -> Markup {
             "INVALID: NaN, infinity, negative radiance or a runaway walk. No verdict: nothing is claimed, or the test's "
             "conditions do not hold (the numbers below say why). All questions of a claim share its error probability by "
             "Holm's method, which is a little sharper than the simultaneous intervals that are drawn. mde: the smallest bias "
-            "of the mean that would have been found with a probability of 90 %, in the worst channel."
+            "of the mean that would have been found with a probability of 90 %, in the worst channel. truth: its source "
+            "and its own error, standard error and bound added. One bias stands for three that read alike. efficiency: "
+            "1 / (variance × rays) in (W m⁻² sr⁻¹)⁻², variances of the channels added, in an image those of its pixels."
         }
     }
+}
+
+/// How many questions a claim led to.
+fn asked(lookup: &Lookup<'_>, claim: &Claim) -> usize {
+    let about = |row: &Row, scene: &str| match claim {
+        Claim::Unbiased(l) => matches!(row.estimand, Estimand::Mean | Estimand::Bounce(_)) && l.covers(scene),
+        Claim::Tiles(l) => matches!(row.estimand, Estimand::Tile(_)) && l.covers(scene),
+        Claim::Variance(l) => row.estimand == Estimand::Variance && l.covers(scene),
+        Claim::Cost(l) => row.estimand == Estimand::Cost && l.covers(scene),
+        Claim::Agree { scene: of, .. } => {
+            row.estimand.is_agreement() && of.as_ref().is_none_or(|of| of == scene)
+        }
+    };
+    let cells = lookup.plan.cells.iter().enumerate();
+    let rows = cells.flat_map(|(i, cell)| lookup.cell(i).iter().map(|row| (*row, cell.scene_label.as_str())));
+    rows.filter(|(row, scene)| row.verdict.is_some() && about(row, scene)).count()
 }
 
 fn verdicts(lines: &[Line]) -> Markup {
@@ -111,13 +135,13 @@ fn verdicts(lines: &[Line]) -> Markup {
         div.wide { table {
             thead { tr {
                 th { "scene" } th { "estimator" } th { "rule" } th { "verdict" } th.n { "bias [%] R G B" }
-                th.n { "mde [%]" } th.n { "rays" } th.n { "efficiency R G B" } th.n { "samples" }
+                th.n { "mde [%]" } th { "truth" } th.n { "rays" } th.n { "efficiency" } th.n { "samples" }
             } }
             tbody { @for line in lines { tr {
                 td { (line.scene) } td { (line.estimator) } td { (line.rule) }
                 td { (badge(line.verdict)) @if !line.note.is_empty() { div.note { (line.note) } } }
-                td.n { (line.bias) } td.n { (line.mde) } td.n { (line.rays) } td.n { (line.efficiency) }
-                td.n { (line.samples) }
+                td.n { (line.bias) } td.n { (line.mde) } td.truth { (line.truth) } td.n { (line.rays) }
+                td.n { (line.efficiency) } td.n { (line.samples) }
             } } }
         } }
     }
@@ -150,7 +174,8 @@ fn gallery(pictures: &[Picture]) -> Markup {
             @if pictures.iter().any(|picture| picture.map.is_some()) {
                 "The maps show the signed difference from the reference in units of its standard error, block by block: "
                 "red, green, and below them blue; white is none, blue means too dark by " (FULL) " standard errors or "
-                "more, orange too bright. Noise alone colours one block of 16,000 fully."
+                "more, orange too bright. Noise alone colours one block of 16,000 fully, more where few paths find light: "
+                "there the standard error is itself not well known, and most often too small."
             }
         }
         div.gallery { @for picture in pictures {
@@ -206,13 +231,22 @@ fn provenance(lookup: &Lookup<'_>) -> Markup {
     let plan = lookup.plan;
     html! {
         @for r in &plan.references { p { "Reference of " (r.scene) ": " code { (r.file) } "." } }
-        pre { "cargo run --bin experiment " (plan.name) " -- --seed " (plan.spec.seed) }
+        pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) (samples(lookup)) }
         p {
             "furnace " (env!("CARGO_PKG_VERSION")) ", seed " (plan.spec.seed) ". The same bytes for any number of threads. "
             a href="results.csv" { "results.csv" } ", " a href="timing.csv" { "timing.csv" } ", "
             a href="run.json" { "run.json" } "."
         }
     }
+}
+
+/// The option that gives all cells the samples that they have, where the file would not.
+fn samples(lookup: &Lookup<'_>) -> String {
+    let (plan, spec) = (lookup.plan, &lookup.plan.spec);
+    let first = plan.cells[0].samples;
+    let as_written = spec.grid.0.iter().all(|grid| grid.samples.unwrap_or(spec.samples) == first);
+    let alike = plan.cells.iter().all(|cell| cell.samples == first);
+    if alike && !as_written { format!(" --samples {first}") } else { String::new() }
 }
 
 fn style() -> String {

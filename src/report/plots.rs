@@ -2,10 +2,10 @@
 //! against the margin.
 
 use super::curves::{self, Curve};
-use super::figure::{Axis, Colour, Figure, Mark, Marker, Panel, Point, Series, Style};
+use super::figure::{Axis, Colour, Figure, Marker, Panel, Point, Series, Style};
 use super::lookup::Lookup;
-use crate::experiment::row::CHANNELS;
-use crate::experiment::spec::{Claim, Plot, Quantity};
+use super::{axes, forest};
+use crate::experiment::spec::{Plot, Quantity};
 use crate::experiment::{CellPlan, Estimand};
 
 /// A figure and the name of its files.
@@ -30,7 +30,10 @@ pub fn figures(lookup: &Lookup<'_>) -> Vec<Named> {
                 }
             }
             Plot::Bars { scene } => figures.extend(bars(lookup, scene)),
-            Plot::Bias {} => figures.extend(lookup.scenes().iter().filter_map(|scene| bias(lookup, scene))),
+            Plot::Bias {} => {
+                let named = |figure| Named { name: "bias".to_owned(), figure };
+                figures.extend(forest::figure(lookup).map(named));
+            }
         }
     }
     number_namesakes(&mut figures);
@@ -55,28 +58,6 @@ pub fn file_name(parts: &[&str]) -> String {
     name
 }
 
-fn title(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Bias => "Bias",
-        Quantity::Variance => "Variance",
-        Quantity::Cost => "Cost",
-        Quantity::Efficiency => "Efficiency",
-        Quantity::Zeros => "Paths that return zero",
-        Quantity::Added => "What the last bounce adds",
-    }
-}
-
-fn axis(quantity: Quantity) -> Axis {
-    match quantity {
-        Quantity::Bias => Axis::linear("bias / truth  [%]"),
-        Quantity::Variance => Axis::log("variance of one sample  [(W m⁻² sr⁻¹)²]"),
-        Quantity::Cost => Axis::log("rays a sample"),
-        Quantity::Efficiency => Axis::log("1 / (variance × rays)  [(W m⁻² sr⁻¹)⁻²]"),
-        Quantity::Zeros => Axis::linear("share of paths  [%]"),
-        Quantity::Added => Axis::log("last bounce / right total  [%]"),
-    }
-}
-
 fn over(
     lookup: &Lookup<'_>,
     cells: &[usize],
@@ -90,19 +71,16 @@ fn over(
     let subject = subject(lookup, first, parameter, series);
     let mut panels = Vec::new();
     for &quantity in show {
-        let x = match parameter {
-            "q" => Axis::linear("survival probability q").within(0.0, 1.0),
-            _ if log => Axis::log(parameter),
-            _ => Axis::linear(parameter),
-        };
-        let mut panel = Panel { title: title(quantity).to_owned(), x, y: axis(quantity), ..Panel::default() };
+        let x = axes::of_parameter(first, parameter, log);
+        let (title, y) = (axes::title(quantity).to_owned(), axes::of_quantity(quantity));
+        let mut panel = Panel { title, x, y, ..Panel::default() };
         for (i, curve) in curves.iter().enumerate() {
             draw(lookup, &mut panel, curve, i, quantity, parameter);
         }
         panels.push(panel);
     }
     let columns = panels.len().min(3);
-    let shown = show.iter().map(|&q| title(q).to_lowercase()).collect::<Vec<_>>().join(", ");
+    let shown = show.iter().map(|&q| axes::title(q).to_lowercase()).collect::<Vec<_>>().join(", ");
     Named {
         name: file_name(&[&subject, &shown, "over", parameter, "by", series]),
         figure: Figure {
@@ -167,9 +145,12 @@ fn bars(lookup: &Lookup<'_>, scene: &str) -> Vec<Named> {
     };
     let shown: Vec<usize> = cells
         .into_iter()
-        .filter(|&c| lookup.plan.cells[c].is_unbiased() && lookup.efficiency(c, kinds[0].0).is_some())
+        .filter(|&c| lookup.finds_all(c) && lookup.efficiency(c, kinds[0].0).is_some())
         .collect();
-    let names = shown.iter().map(|&c| short(lookup, c)).collect();
+    if shown.is_empty() {
+        return Vec::new();
+    }
+    let (shared, names) = forest::names(lookup, &shown);
     let series = kinds.iter().map(|&(estimand, label, colour)| {
         let bar = |(x, &cell): (usize, &usize)| {
             let (value, error) = lookup.efficiency(cell, estimand)?;
@@ -181,63 +162,16 @@ fn bars(lookup: &Lookup<'_>, scene: &str) -> Vec<Named> {
     });
     let panel = Panel {
         x: Axis::categories("", names),
-        y: Axis::log("1 / (variance × rays), variances of the channels added"),
+        y: Axis::log("1 / (variance × rays), channels added  [(W m⁻² sr⁻¹)⁻²]"),
         series: series.collect(),
+        lying: true,
         ..Panel::default()
     };
     let figure = Figure {
-        title: format!("{scene}: efficiency by termination rule"),
-        alt: format!("Efficiency of each unbiased estimator and rule in {scene}."),
+        title: format!("{}: efficiency", [vec![scene.to_owned()], shared].concat().join(", ")),
+        alt: format!("Efficiency of each estimator and rule that finds all light in {scene}."),
         panels: vec![panel],
         columns: 1,
     };
     vec![Named { name: file_name(&[scene, "efficiency"]), figure }]
-}
-
-/// Estimator and rule.
-fn short(lookup: &Lookup<'_>, cell: usize) -> String {
-    let plan = &lookup.plan.cells[cell];
-    format!("{}, {}", plan.estimator_label, lookup.plan.rule_label(plan))
-}
-
-/// Relative bias of every judged unbiased cell of a scene, with its simultaneous interval.
-fn bias(lookup: &Lookup<'_>, scene: &str) -> Option<Named> {
-    let judged = |&c: &usize| {
-        let has_interval =
-            |channel| lookup.row(c, Estimand::Mean, Some(channel)).is_some_and(|r| r.ci.is_some());
-        lookup.plan.cells[c].is_unbiased() && (0..3).any(has_interval)
-    };
-    let cells: Vec<usize> = lookup.of_scene(scene).into_iter().filter(judged).collect();
-    if cells.is_empty() {
-        return None;
-    }
-    let names = cells.iter().map(|&c| short(lookup, c)).collect();
-    let series = (0..3).map(|channel| {
-        let point = |(x, &cell): (usize, &usize)| {
-            let row = lookup.row(cell, Estimand::Mean, Some(channel))?;
-            let scale = 100.0 / row.truth?;
-            let (low, high) = row.ci?;
-            Some(Point::between(x as f64, row.bias? * scale, low * scale, high * scale))
-        };
-        let points = cells.iter().enumerate().filter_map(point).collect();
-        let (label, colour) = (CHANNELS[channel].to_owned(), curves::CHANNEL_COLOURS[channel]);
-        Series { label, colour, style: Style::Markers(Marker::nth(channel)), points }
-    });
-    let limits = lookup.plan.spec.claim.iter().filter_map(Claim::unbiased).find(|l| l.covers(scene))?;
-    let margin = 100.0 * limits.margin;
-    let line = |at: f64, label: &str| Mark::Horizontal { at, label: label.to_owned(), colour: Colour::Black };
-    let panel = Panel {
-        x: Axis::categories("", names),
-        y: Axis::linear("bias / truth  [%]"),
-        marks: vec![line(margin, &format!("margin ±{margin} %")), line(-margin, "")],
-        series: series.collect(),
-        ..Panel::default()
-    };
-    let figure = Figure {
-        title: format!("{scene}: bias of the unbiased estimators"),
-        alt: format!("Relative bias with simultaneous intervals, against the margin of {margin} %."),
-        panels: vec![panel],
-        columns: 1,
-    };
-    Some(Named { name: file_name(&[scene, "bias"]), figure })
 }

@@ -1,6 +1,7 @@
 //! One line a cell: what was measured, what is concluded.
 
 use super::lookup::Lookup;
+use super::number;
 use crate::experiment::row::CHANNELS;
 use crate::experiment::{Estimand, Row};
 use crate::stats::Verdict;
@@ -21,8 +22,10 @@ pub struct Line {
     pub mde: String,
     /// Rays a sample.
     pub rays: String,
-    /// Efficiency in each channel.
+    /// Efficiency, variances of the channels added, of a pixel for an image.
     pub efficiency: String,
+    /// Where the truth comes from and its own error relative to it, worst channel [%].
+    pub truth: String,
     /// The worst verdict.
     pub verdict: Option<Verdict>,
     /// What else to know.
@@ -33,28 +36,53 @@ pub struct Line {
 pub fn line(lookup: &Lookup<'_>, cell: usize) -> Line {
     let plan = &lookup.plan.cells[cell];
     let means: Vec<&Row> = (0..3).filter_map(|c| lookup.row(cell, Estimand::Mean, Some(c))).collect();
-    let grey = means.windows(2).all(|pair| pair[0].mean == pair[1].mean && pair[0].truth == pair[1].truth);
-    let shown = if grey { &means[..1] } else { &means[..] };
-    let percent = |row: &&Row| match (row.bias, row.truth) {
-        (Some(bias), Some(truth)) if truth != 0.0 => format!("{:+.3}", 100.0 * bias / truth),
+    let bias = |row: &&Row| match (row.bias, row.truth) {
+        (Some(bias), Some(truth)) if truth != 0.0 => percent(bias / truth),
         _ => "-".to_owned(),
     };
-    let mde = shown.iter().filter_map(|r| Some(100.0 * r.mde? / r.truth?)).fold(f64::NAN, f64::max);
-    let number = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.3e}"));
+    let mde = means.iter().filter_map(|r| Some(100.0 * r.mde? / r.truth?)).fold(f64::NAN, f64::max);
+    let estimand = if lookup.is_image(cell) { Estimand::PixelVariance } else { Estimand::Mean };
+    let efficiency = lookup.efficiency(cell, estimand).filter(|_| !lookup.is_noise_free(cell));
     Line {
         scene: plan.scene_label.clone(),
         estimator: plan.estimator_label.clone(),
         rule: lookup.plan.rule_label(plan),
         samples: plan.samples,
-        bias: shown.iter().map(percent).collect::<Vec<_>>().join(" "),
+        bias: bias_of(means.iter().map(bias).collect()),
         mde: if mde.is_nan() { "-".to_owned() } else { format!("{mde:.3}") },
         rays: lookup
             .row(cell, Estimand::Cost, None)
             .map_or_else(String::new, |row| format!("{:.2}", row.mean / plan.pixels as f64)),
-        efficiency: shown.iter().map(|r| number(r.efficiency)).collect::<Vec<_>>().join(" "),
+        efficiency: efficiency.map_or_else(|| "-".to_owned(), |(value, _)| number::short(value)),
+        truth: truth(&means),
         verdict: lookup.verdict(cell),
-        note: note(lookup, cell, shown),
+        note: note(lookup, cell, &means),
     }
+}
+
+/// A signed share in percent; no sign for what rounds to nothing.
+fn percent(share: f64) -> String {
+    let text = format!("{:+.3}", 100.0 * share);
+    if text == "-0.000" || text == "+0.000" { "0.000".to_owned() } else { text }
+}
+
+/// The channels' biases; one where they read alike.
+fn bias_of(channels: Vec<String>) -> String {
+    match channels.as_slice() {
+        [first, rest @ ..] if rest.iter().all(|other| other == first) => first.clone(),
+        _ => channels.join(" "),
+    }
+}
+
+/// "closed form", "deterministic ± 0.002 %": standard error and bound together.
+fn truth(means: &[&Row]) -> String {
+    let Some(row) = means.iter().find(|row| !row.source.is_empty()) else { return "-".to_owned() };
+    let own = |row: &&Row| {
+        let error = row.truth_error.unwrap_or(0.0) + row.truth_bound.unwrap_or(0.0);
+        Some(100.0 * error / row.truth.filter(|&truth| truth != 0.0)?)
+    };
+    let error = means.iter().filter_map(own).fold(0.0, f64::max);
+    if error > 0.0 { format!("{} ± {} %", row.source, number::short(error)) } else { row.source.to_owned() }
 }
 
 /// Why a channel was not judged, or the first thing that is not well.
@@ -66,8 +94,17 @@ fn note(lookup: &Lookup<'_>, cell: usize, means: &[&Row]) -> String {
         let index = row.estimand.index().map_or_else(String::new, |i| format!(" {i}"));
         return format!("{}{index} {channel}: {}", row.estimand, row.note);
     }
-    if !lookup.plan.cells[cell].is_unbiased() && lookup.verdict(cell).is_some() {
-        return "biased as theory says".to_owned();
+    let is_clamped = !lookup.plan.cells[cell].is_unbiased();
+    if lookup.verdict(cell).is_some() && !lookup.finds_all(cell) {
+        let all = lookup.expected_shares(cell).iter().all(|share| *share < -1.0 + 1e-9);
+        let what = if all {
+            "finds no light"
+        } else if is_clamped {
+            "biased"
+        } else {
+            "misses light"
+        };
+        return format!("{what}, as theory says");
     }
     let infinite: Vec<&str> = means
         .iter()

@@ -39,7 +39,8 @@ impl<'a> Plan<'a> {
     /// Plans a panel in a cell of `width` pixels, with a plot of `height` pixels unless categories
     /// at its left need more or less.
     pub fn new(panel: &'a Panel, width: f64, height: f64) -> Self {
-        let sideways = !names_fit(&panel.x, 0.85 * width);
+        let lying = panel.lying && !panel.x.categories.is_empty();
+        let sideways = lying || !names_fit(&panel.x, 0.85 * width);
         let mut plan = Self {
             panel,
             x: range::of_x(panel),
@@ -190,7 +191,9 @@ impl<'a> Plan<'a> {
         let line = font::line_height(TITLE_EM);
         for (index, text) in self.title.iter().rev().enumerate() {
             let baseline = frame.top - 10.0 - line * index as f64;
-            canvas.text(text, (middle, baseline), TITLE_EM, Anchor::Middle);
+            // a title wider than its plot may reach over what is left of it, but not out of the panel
+            let end = frame.right() + RIGHT - font::width(text, TITLE_EM) / 2.0;
+            canvas.text(text, (middle.min(end), baseline), TITLE_EM, Anchor::Middle);
         }
         let (axis, _) = self.level_axis();
         let line = font::line_height(LABEL_EM);
