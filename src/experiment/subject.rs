@@ -141,6 +141,10 @@ impl Subject<'_> {
         if let Some(expected) = self.truth.expected(channel, counted) {
             row.note = self.rare(variance, expected.value, blocks);
         }
+        if row.note.is_empty() && self.known_variance(channel, Counted::All) == Known::Infinite {
+            // a single bounce has a variance, but nothing says how many samples would do
+            row.note = "infinite variance of the whole: not judged".to_owned();
+        }
         let claim = sheet.claim(Claim::unbiased).filter(|_| row.note.is_empty());
         self.compare(row, blocks, counted, claim, sheet);
     }
