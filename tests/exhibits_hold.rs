@@ -111,3 +111,37 @@ fn of_mirrors_and_glass() {
 fn of_pixels_lenses_and_shutters() {
     all_of(&["pixel_edge", "lens_edge", "moving_edge", "rising_light"]);
 }
+
+/// Where theory knows that there is no variance it says so, whatever else it does not know.
+#[test]
+fn infinite_variances_are_called_infinite() {
+    use furnace::estimator::{Explicit, Implicit, Technique};
+    use furnace::scene::{Directions, LightSampling};
+    use furnace::truth::Known;
+    let variance = |name: &str, estimator: &Estimator| {
+        let exhibit = EXHIBITS.iter().find(|e| e.name == name).unwrap();
+        let closed = ClosedForm::of(&exhibit.scene(exhibit.parameter.usual), estimator).unwrap();
+        closed.central(0, Counted::All, 2)
+    };
+    let implicit = |q| {
+        let roulette = Roulette::unclamped(Rule::Constant { q });
+        Estimator::Implicit(Implicit { directions: Directions::Cosine, roulette })
+    };
+    // reflectance 0.6: the line is at 0.36
+    assert_eq!(variance("mirror_furnace", &implicit(0.35)), Known::Infinite);
+    assert!(matches!(variance("mirror_furnace", &implicit(0.37)), Known::Value(_)));
+    let explicit = |technique, lights, q| {
+        let roulette = Roulette::unclamped(Rule::Constant { q });
+        Estimator::Explicit(Explicit { technique, lights, directions: Directions::Cosine, roulette })
+    };
+    // neither a disk nor part of a sphere has a map by solid angle, so that sampling it falls back to area
+    for lights in [LightSampling::AREA, LightSampling::SOLID_ANGLE] {
+        assert_eq!(variance("dome", &explicit(Technique::Light, lights, 0.9)), Known::Infinite);
+    }
+    let both = Technique::Both(furnace::estimator::Heuristic::Balance);
+    assert_eq!(variance("dome", &explicit(both, LightSampling::AREA, 0.9)), Known::Unknown);
+    assert_eq!(variance("dome", &explicit(both, LightSampling::AREA, 0.2)), Known::Infinite);
+    let point = |q| explicit(Technique::Light, LightSampling::AREA, q);
+    assert_eq!(variance("point_in_sphere", &point(0.48)), Known::Infinite); // albedo 0.7
+    assert!(matches!(variance("point_in_sphere", &point(0.5)), Known::Value(_)));
+}

@@ -121,6 +121,7 @@ impl ClosedForm {
             return match variance {
                 // contributions are not negative: a mean of zero leaves no room for any
                 _ if mean == 0.0 || is_below(counted, *steady) => Known::Value(0.0),
+                Some(v) if v[channel] == f64::INFINITY && counted == Counted::All => Known::Infinite,
                 Some(v)
                     if mean == self.expected(channel, Counted::All) && (order == 2 || v[channel] == 0.0) =>
                 {
