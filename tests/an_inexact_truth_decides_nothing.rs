@@ -33,7 +33,7 @@ fn judged(mean: f64, std_error: f64) -> Row {
     fs::write(place.path().join("truth.exr"), truth.bytes().unwrap()).unwrap();
     let file = place.path().join("x.toml");
     let plan = Plan::new("x", Path::new(&file), FILE, &Overrides::default()).unwrap();
-    let cell = run_cell(&plan.cells[0], &AtomicBool::new(false), &|_| ());
+    let cell = run_cell(&plan.cells[0], &AtomicBool::new(false), &|_| (), &|_| false);
     let rows = verdict::rows(&plan, &[cell]);
     rows.into_iter().find(|r| r.estimand == Estimand::Mean && r.channel == Some(0)).unwrap()
 }

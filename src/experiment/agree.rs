@@ -29,7 +29,7 @@ pub(super) fn compare(plan: &Plan, cells: &[Option<Cell>], rows: &mut Vec<Row>, 
                     rows.push(row);
                     if !rare {
                         let question = difference(ours, theirs, margin, invalid.clone());
-                        asked.push(Asked { claim, row: rows.len() - 1, question });
+                        asked.push(Asked { claim, row: rows.len() - 1, question, foreseen: None });
                     }
                 }
             }

@@ -1,8 +1,10 @@
 //! What is kept of the realizations: mergeable moments, never single samples.
 
+use super::ledger::{LENGTHS, Ledger, Stream};
+use super::row::Estimand;
 use crate::estimator::{BINS, Tally};
 use crate::scene::Rgb;
-use crate::stats::Moments;
+use crate::stats::{Bets, Moments, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// One set of moments a channel.
@@ -32,6 +34,10 @@ pub struct Block {
     pub tally: Tally,
     /// Pixel by pixel; empty for a probe.
     pub pixels: Pixels,
+    /// What was won by betting, a stream each.
+    pub bets: Vec<Bets>,
+    ledger: Ledger,
+    sum: Rgb,
     pass: Rgb,
 }
 
@@ -51,8 +57,8 @@ pub struct Pixels {
 }
 
 impl Block {
-    /// An empty block for a sensor of this resolution.
-    pub fn new(width: u32, height: u32) -> Self {
+    /// An empty block for a sensor of this resolution, which bets on these streams.
+    pub fn new(width: u32, height: u32, streams: &[Stream]) -> Self {
         let count = if width * height > 1 { (width * height) as usize } else { 0 };
         let empty = vec![Rgb::ZERO; count];
         Block {
@@ -61,6 +67,9 @@ impl Block {
             zeros: 0,
             tally: Tally::default(),
             pixels: Pixels { width, height, n: 0, mean: empty.clone(), m2: empty },
+            bets: Vec::new(),
+            ledger: Ledger::new(streams),
+            sum: Rgb::ZERO,
             pass: Rgb::ZERO,
         }
     }
@@ -76,14 +85,16 @@ impl Block {
         }
     }
 
-    /// Closes a realization that traced so many rays.
+    /// Closes a realization that traced so many rays; `tally` is that of the block so far.
     #[inline]
-    pub fn realization(&mut self, rays: f64) {
+    pub fn realization(&mut self, rays: u64, tally: &Tally) {
         let pixels = f64::from(self.pixels.width) * f64::from(self.pixels.height);
         let value = self.pass / pixels;
         self.zeros += u64::from(value == Rgb::ZERO);
         push(&mut self.total, value);
-        self.cost.push(rays);
+        self.cost.push(rays as f64);
+        self.sum += value;
+        self.ledger.realization(rays, tally, self.sum);
         self.pixels.n += 1;
         self.pass = Rgb::ZERO;
     }
@@ -99,6 +110,7 @@ impl Block {
 
     /// Takes over the tally of all its paths.
     pub fn close(&mut self, tally: Tally) {
+        self.bets = self.ledger.close(&tally, self.sum);
         self.tally = tally;
     }
 }
@@ -126,11 +138,43 @@ pub struct Cell {
     pub pixel_variance: Channels,
     /// Median over the image of the variance of a pixel's sample.
     pub median_variance: [f64; 3],
+    /// What was won by betting, a stream each, in the plan's order.
+    pub bets: Vec<Bets>,
+    /// How many realizations took 0, 1, 2, ... rays; the last bin holds all longer ones.
+    pub lengths: Vec<u64>,
+    /// What was seen on the way, at numbers of samples that grow in proportion.
+    pub history: Vec<Snapshot>,
+    /// Questions that were decided before the last sample was in.
+    pub decided: Vec<Decided>,
     /// Means of [`TILES`] x [`TILES`] tiles, row by row from the top left; empty if they do not divide the image.
     pub tiles: Vec<[Measured; 3]>,
     /// Pixel by pixel; empty for a probe. Kept as an image, not in the store.
     #[serde(skip)]
     pub pixels: Pixels,
+}
+
+/// What a cell had seen after some of its blocks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Value of a realization.
+    pub total: Channels,
+    /// Rays of a realization.
+    pub rays: f64,
+    /// Logarithm of the e-values against "at most" and "at least" the guess of the mean, for the first three streams.
+    pub log_e: Vec<(f64, Option<f64>)>,
+}
+
+/// A question and the number of realizations after which it was decided.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Decided {
+    /// What is measured.
+    pub estimand: Estimand,
+    /// In which channel.
+    pub channel: Option<usize>,
+    /// How.
+    pub verdict: Verdict,
+    /// Realizations.
+    pub samples: u64,
 }
 
 /// An image is divided into so many tiles along each edge.
@@ -174,6 +218,12 @@ impl Cell {
         for (bounce, &sum) in self.bounces.iter_mut().zip(&block.tally.bounces) {
             push(bounce, sum / paths);
         }
+        match self.bets.is_empty() {
+            true => self.bets.clone_from(&block.bets),
+            false => self.bets.iter_mut().zip(&block.bets).for_each(|(ours, theirs)| ours.merge(theirs)),
+        }
+        self.lengths.resize(LENGTHS, 0);
+        self.lengths.iter_mut().zip(&block.ledger.lengths).for_each(|(ours, theirs)| *ours += theirs);
         self.zeros += block.zeros;
         self.non_finite += block.tally.non_finite;
         self.negative += block.tally.negative;
@@ -183,11 +233,25 @@ impl Cell {
             push(&mut self.pixel_variance, variance.iter().sum::<Rgb>() / variance.len() as f64);
             self.pixels.merge(&block.pixels);
         }
+        self.remember();
+    }
+
+    /// Keeps what was seen after 1, 2, 3, ... blocks, less and less often: eight times while samples double.
+    fn remember(&mut self) {
+        let step = |n: u64| libm::floor(8.0 * libm::log2(n as f64));
+        let blocks = self.blocks[0].n;
+        if blocks == 1 || step(blocks) > step(blocks - 1) {
+            let log_e = |bets: &Bets| (bets.log_above(bets.stake.scale), bets.log_below(bets.stake.scale));
+            let log_e = self.bets.iter().take(3).map(log_e).collect();
+            self.history.push(Snapshot { total: self.total, rays: self.cost.mean, log_e });
+        }
     }
 
     /// Whether all lists have their length; a store may have been damaged.
     pub fn is_whole(&self) -> bool {
-        self.bounces.len() == BINS && [0, (TILES * TILES) as usize].contains(&self.tiles.len())
+        self.bounces.len() == BINS
+            && self.lengths.len() == LENGTHS
+            && [0, (TILES * TILES) as usize].contains(&self.tiles.len())
     }
 
     /// Why nothing can be concluded from this cell, if so.

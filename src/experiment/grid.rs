@@ -74,10 +74,12 @@ fn grid_cells(
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
                     samples: grid.samples.unwrap_or(spec.samples),
                     block: 0,
-                    pixels: 0,
+                    pixels: pixels(&built),
                     rays: rays(&scene.choice.value, &built, &whole),
                     finds_all: making::finds_all(&whole, &built),
                     address: address(spec, &scene.choice.value, &whole),
+                    streams: Vec::new(),
+                    may_stop: false,
                 });
             }
         }
@@ -146,12 +148,16 @@ fn largest_q(roulette: &Roulette, scene: &Scene) -> f64 {
     }
 }
 
+/// Pixels of one realization.
+fn pixels(scene: &Scene) -> u64 {
+    let (width, height) = scene.sensor.resolution();
+    u64::from(width) * u64::from(height)
+}
+
 /// Expected rays a realization: by theory, else an upper bound from a closed scene of the largest albedo.
 fn rays(kind: &SceneKind, scene: &Scene, estimator: &Estimator) -> f64 {
-    let (width, height) = scene.sensor.resolution();
-    let pixels = f64::from(width) * f64::from(height);
     let theory = ClosedForm::of(kind, estimator).and_then(|closed| closed.rays());
-    pixels * theory.unwrap_or_else(|| ray_bound(estimator, scene))
+    pixels(scene) as f64 * theory.unwrap_or_else(|| ray_bound(estimator, scene))
 }
 
 fn ray_bound(estimator: &Estimator, scene: &Scene) -> f64 {

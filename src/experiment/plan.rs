@@ -2,12 +2,14 @@
 
 use super::error::Error;
 use super::grid;
+use super::ledger::Stream;
 use super::references::{self, NamedReference};
+use super::run::LOOKS_IN_ALL;
 use super::spec::{self, Claim, Limits, Plot, Spec};
-use crate::estimator::{BINS, Estimate, Estimator, MAX_RAYS, Property};
+use super::stakes;
+use crate::estimator::{Estimate, Estimator, MAX_RAYS, Property};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
-use crate::stats::student;
 use crate::truth::{ClosedForm, Counted, Truth};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -40,6 +42,10 @@ pub struct CellPlan {
     pub finds_all: bool,
     /// Where its random streams live.
     pub address: Address,
+    /// What is bet on.
+    pub streams: Vec<Stream>,
+    /// Whether it may end before all samples are taken: nothing but claims about this cell alone wants them.
+    pub may_stop: bool,
 }
 
 impl CellPlan {
@@ -119,6 +125,7 @@ impl Plan {
                 return Err(Error::Refused(format!("no cell of {name} has `{text}` in its label")));
             }
         }
+        stakes::lay(&mut plan);
         plan.allot(overrides);
         plan.cells.iter().try_for_each(|cell| plan.proportionate(cell, overrides.force))?;
         Ok(plan)
@@ -204,16 +211,17 @@ impl Plan {
     /// Fixes each cell's samples and blocks.
     fn allot(&mut self, overrides: &Overrides) {
         let claims = &self.spec.claim;
-        let limits_of =
-            |scene: &str| claims.iter().filter_map(Claim::unbiased).find(|limits| limits.covers(scene));
-        let questions = self.cells.len() * 3 * (BINS + 1);
+        let asked: Vec<(&Limits, f64)> = (claims.iter())
+            .filter_map(|claim| {
+                Some((claim.unbiased()?, claim.alpha() / stakes::questions(self, claim) as f64))
+            })
+            .collect();
         for cell in &mut self.cells {
-            let (width, height) = cell.scene.build().sensor.resolution();
-            cell.pixels = u64::from(width) * u64::from(height);
-            match (overrides.samples, self.spec.max_samples, limits_of(&cell.scene_label)) {
+            let limits = asked.iter().find(|(limits, _)| limits.covers(&cell.scene_label));
+            match (overrides.samples, self.spec.max_samples, limits) {
                 (Some(samples), _, _) => cell.samples = samples,
-                (None, Some(most), Some(limits)) if most > cell.samples => {
-                    let wanted = wanted_samples(cell, limits, questions);
+                (None, Some(most), Some((limits, level))) if most > cell.samples => {
+                    let wanted = wanted_samples(cell, limits.margin, *level);
                     cell.samples = wanted.map_or(cell.samples, |n| n.clamp(cell.samples, most));
                 }
                 _ => {}
@@ -259,16 +267,18 @@ fn rule_label(cell: &CellPlan, swept: &[String]) -> String {
     format!("{}{params}", cell.roulette_label)
 }
 
-/// Realizations after which an unbiased cell is shown to be within the margin in each channel, by theory's variance:
-/// n = ((z_alpha + z_beta) sigma / (margin x mean))², with alpha shared among `questions`.
-fn wanted_samples(cell: &CellPlan, limits: &Limits, questions: usize) -> Option<u64> {
-    const Z_POWER: f64 = 2.0; // 97.7 %
+/// Realizations after which a cell is shown to be within the relative margin in each channel, by theory's variance, where
+/// each question has `level`; `None` where theory knows no variance.
+pub fn wanted_samples(cell: &CellPlan, margin: f64, level: f64) -> Option<u64> {
+    const POWER: f64 = 0.999;
     let closed = ClosedForm::of(&cell.scene, &cell.estimator)?;
-    let z = student::quantile(1.0 - limits.alpha / questions as f64, f64::INFINITY) + Z_POWER;
     let needed = |channel| {
         let variance = closed.central(channel, Counted::All, 2).value()?;
-        let margin = limits.margin * closed.truth(channel, Counted::All);
-        (margin > 0.0).then(|| z * z * variance / (margin * margin))
+        let margin = margin * closed.truth(channel, Counted::All);
+        let samples = stakes::samples(cell, None, channel, variance);
+        // a t test shares its level among its looks
+        let looks = if cell.may_stop && samples.bets.is_none() { f64::from(LOOKS_IN_ALL) } else { 1.0 };
+        (margin > 0.0).then(|| samples.needed(margin, level / looks, POWER))
     };
     (0..3).filter_map(needed).reduce(f64::max).map(|n| n.ceil() as u64)
 }

@@ -1,11 +1,13 @@
 //! One row of `results.csv`: one estimand of one cell in one channel.
 
-use crate::stats::Verdict;
+use crate::stats::{Engine, Verdict};
 use crate::truth::Value;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// What a row measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Estimand {
     /// Mean of a realization, all bounces.
     Mean,
@@ -94,8 +96,14 @@ pub struct Row {
     pub ci: Option<(f64, f64)>,
     /// Probability, were all well, of a deviation from the expected bias at least as large.
     pub p_value: Option<f64>,
+    /// e-value against the expected value, where samples were bet on.
+    pub e_value: Option<f64>,
     /// Smallest deviation that would have been found with 90 % power.
     pub mde: Option<f64>,
+    /// What the verdict rests on.
+    pub engine: Option<Engine>,
+    /// Realizations after which the verdict was certain, if that was before the last one.
+    pub needed: Option<u64>,
     /// What is concluded; `None` if nothing was claimed.
     pub verdict: Option<Verdict>,
     /// Expected number of rays a realization, as measured.
@@ -127,7 +135,10 @@ impl Row {
             bias: None,
             ci: None,
             p_value: None,
+            e_value: None,
             mde: None,
+            engine: None,
+            needed: None,
             verdict: None,
             rays: None,
             efficiency: None,

@@ -2,6 +2,7 @@
 //! block order, serially, so that results have the same bits for any number of threads.
 
 use super::cell::{Block, Cell};
+use super::ledger::Stream;
 use super::plan::CellPlan;
 use crate::estimator::{Ctx, Estimate, Tally};
 use crate::sampling::Address;
@@ -13,27 +14,45 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Paths between two looks at the stop flag; also bounds how many blocks are held at once.
 pub(super) const WAVE_PATHS: u64 = 1 << 18;
 
-/// Runs one cell on the current thread pool, `None` if `stop` was raised before its end.
-/// `progress` is told of the rays traced by each finished wave.
-pub fn run_cell(plan: &CellPlan, stop: &AtomicBool, progress: &dyn Fn(f64)) -> Option<Cell> {
+/// Eighths of a cell's blocks after which one looks whether all is decided.
+const LOOKS: [u64; 4] = [1, 2, 4, 6];
+
+/// How many times a cell is looked at, if it may stop early: a t test shares its level among them.
+pub const LOOKS_IN_ALL: u32 = LOOKS.len() as u32 + 1;
+
+/// Runs one cell on the current thread pool, `None` if `stop` was raised before its end. Where `is_decided` says so at
+/// one of the looks, it ends before all of its samples are taken. `progress` is told of the rays traced by each finished
+/// wave.
+pub fn run_cell(
+    plan: &CellPlan,
+    stop: &AtomicBool,
+    progress: &dyn Fn(f64),
+    is_decided: &dyn Fn(&mut Cell) -> bool,
+) -> Option<Cell> {
     let scene = plan.scene.build();
     let blocks = plan.samples / plan.block;
     let wave = (WAVE_PATHS / (plan.block * plan.pixels)).max(8);
+    let looks = LOOKS.map(|eighths| (blocks * eighths).div_ceil(8));
     let mut cell = Cell::default();
     let mut first = 0;
     while first < blocks {
         if stop.load(Ordering::Relaxed) {
             return None;
         }
-        let last = (first + wave).min(blocks);
+        let look = looks.into_iter().find(|&look| look > first).unwrap_or(blocks);
+        let last = (first + wave).min(look);
         let run = |block: u64| {
             let realizations = block * plan.block..(block + 1) * plan.block;
-            block_of(&scene, &plan.estimator, &plan.address, realizations)
+            block_of(&scene, &plan.estimator, &plan.address, &plan.streams, realizations)
         };
         let finished: Vec<Block> = (first..last).into_par_iter().map(run).collect();
         finished.iter().for_each(|block| cell.merge(block));
         progress(finished.iter().map(|block| block.tally.rays as f64).sum());
         first = last;
+        // two blocks at least, or there is no standard error
+        if last == look && last < blocks && last > 1 && is_decided(&mut cell) {
+            break;
+        }
     }
     cell.finish();
     Some(cell)
@@ -43,7 +62,7 @@ pub fn run_cell(plan: &CellPlan, stop: &AtomicBool, progress: &dyn Fn(f64)) -> O
 pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, samples: u64, block: u64) -> Cell {
     let blocks: Vec<Block> = (0..samples / block)
         .into_par_iter()
-        .map(|b| block_of(scene, estimator, address, b * block..(b + 1) * block))
+        .map(|b| block_of(scene, estimator, address, &[], b * block..(b + 1) * block))
         .collect();
     let mut cell = Cell::default();
     blocks.iter().for_each(|block| cell.merge(block));
@@ -51,15 +70,16 @@ pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, sampl
     cell
 }
 
-/// One block of realizations.
+/// One block of realizations, which bets on the given streams.
 pub fn block_of(
     scene: &Scene,
     estimator: &impl Estimate,
     address: &Address,
+    streams: &[Stream],
     realizations: Range<u64>,
 ) -> Block {
     let (width, height) = scene.sensor.resolution();
-    let mut block = Block::new(width, height);
+    let mut block = Block::new(width, height, streams);
     let mut tally = Tally::default();
     for realization in realizations {
         let rays_before = tally.rays;
@@ -72,7 +92,7 @@ pub fn block_of(
                 block.pixel(pixel as usize, tally.value);
             }
         }
-        block.realization((tally.rays - rays_before) as f64);
+        block.realization(tally.rays - rays_before, &tally);
     }
     block.close(tally);
     block

@@ -4,10 +4,12 @@ use super::agree;
 use super::cell::{Cell, TILES};
 use super::plan::CellPlan;
 use super::row::{Estimand, Row};
+use super::run::LOOKS_IN_ALL;
 use super::spec::Claim;
+use super::stakes;
 use super::verdict::{MIN_EFFECTIVE, Sheet};
 use crate::estimator::BINS;
-use crate::stats::{Moments, Question, Verdict};
+use crate::stats::{Bets, Moments, Question};
 use crate::truth::{Counted, Known, Source, Truth, Value};
 
 /// A finished cell and what is right for it.
@@ -18,8 +20,11 @@ pub(super) struct Subject<'a> {
     pub truth: &'a Truth,
 }
 
+/// Probability with which samples must suffice for a bounce to be judged: of some thousand of them, none should stay open.
+const POWER: f64 = 0.9999;
+
 /// The bounces that a bin holds.
-fn counted(bin: usize) -> Counted {
+pub(super) fn counted(bin: usize) -> Counted {
     if bin + 1 == BINS { Counted::From(bin as u32) } else { Counted::Only(bin as u32) }
 }
 
@@ -49,40 +54,50 @@ impl Subject<'_> {
 
     fn total(&self, channel: usize, sheet: &mut Sheet<'_>) {
         let total = &self.cell.total[channel];
-        let blocks = &self.cell.blocks[channel];
         let mut row = self.row(Estimand::Mean, Some(channel), total.mean);
         let variance = self.known_variance(channel, Counted::All);
         row.rays = Some(self.cell.cost.mean);
         row.note = self.truth.refused().unwrap_or_default().to_owned();
+        let mut question = Question::about(total, self.cell.invalid(), 0.0, 0.0);
+        let mut foreseen = None;
         if variance == Known::Infinite {
             let tail = self.truth.theory().and_then(|theory| theory.tail_index(channel));
             let tail = tail.map_or_else(String::new, |alpha| format!(" (tail index {alpha:.2})"));
-            row.note = format!("infinite variance{tail}: no standard error, no interval, not judged");
+            row.note =
+                format!("infinite variance{tail}: no standard error; only \"too bright\" can be shown");
+            (foreseen, question.unfit) = (Some(row.note.clone()), Some(row.note.clone()));
         } else {
-            row.std_error = blocks.std_error();
+            row.std_error = total.std_error();
             row.variance = total.variance();
             if variance == Known::Value(0.0) {
                 row.note = "noise-free".to_owned();
             } else {
                 row.rate(total.variance_std_error());
             }
+            question.skewness = self.skewness(channel);
+            question.unfit = self.unfit(channel, variance);
+            if let Some(why) = &question.unfit {
+                row.note.clone_from(why);
+            }
         }
         let claim = sheet.claim(Claim::unbiased);
-        let enough = self.enough(&mut row, channel, variance, blocks);
-        if !enough && claim.is_some() {
-            row.verdict = Some(Verdict::Inconclusive);
-        }
-        let legal = enough && variance != Known::Infinite;
-        self.compare(row, blocks, Counted::All, claim.filter(|_| legal), sheet);
+        self.compare(row, question, Counted::All, (claim, foreseen), sheet);
+    }
+
+    /// Skewness of the distribution of the mean: by theory where it is known, else as measured.
+    fn skewness(&self, channel: usize) -> f64 {
+        let known = self.truth.theory().and_then(|theory| theory.skewness(channel, Counted::All));
+        let of_sample = known.or(self.cell.total[channel].skewness()).unwrap_or(0.0);
+        of_sample / (self.cell.cost.n as f64).sqrt()
     }
 
     /// States a row beside the right mean and asks about it under a claim, where both are known.
     fn compare(
         &self,
         mut row: Row,
-        blocks: &Moments,
+        question: Question,
         counted: Counted,
-        claim: Option<(usize, f64)>,
+        (claim, mut foreseen): (Option<(usize, f64)>, Option<String>),
         sheet: &mut Sheet<'_>,
     ) {
         let channel = row.channel.expect("means have a colour");
@@ -92,74 +107,96 @@ impl Subject<'_> {
         if let Some(right) = self.truth.mean(channel, counted) {
             row.against(&right, expected.map(|e| e.value));
         }
+        let estimand = row.estimand;
         sheet.state(row);
-        if let (Some((claim, margin)), Some(expected), Some(whole)) = (claim, expected, whole) {
-            let noise_free = self.known_variance(channel, counted) == Known::Value(0.0);
-            let margin = margin * whole.value.abs();
-            sheet.ask(claim, Question { noise_free, margin, ..self.question(blocks, &expected) });
+        let (Some((claim, margin)), Some(expected), Some(whole)) = (claim, expected, whole) else { return };
+        let margin = margin * whole.value.abs();
+        let variance = self.known_variance(channel, counted);
+        let bets = self.bets(estimand, channel);
+        if bets.is_none() && foreseen.is_some() {
+            return;
         }
-    }
-
-    /// Whether the mean of these blocks is what is expected; the margin is still to be set.
-    fn question(&self, blocks: &Moments, expected: &Value) -> Question {
-        Question {
+        if let Known::Value(variance) = variance
+            && foreseen.is_none()
+            && estimand != Estimand::Mean
+            && bets.is_some_and(|bets| bets.stake.bound.is_some())
+        {
+            let level = sheet.levels[claim];
+            let bin = estimand.index();
+            let needed = stakes::samples(self.plan, bin, channel, variance).needed(margin, level, POWER);
+            let n = self.cell.cost.n.max(self.plan.samples) as f64;
+            foreseen = (needed > n).then(|| format!("{needed:.1e} samples would be needed: not judged"));
+        }
+        let question = Question {
+            expected: expected.value,
             expected_std_error: expected.std_error,
             expected_df: expected.df,
             systematic: expected.bound,
-            ..Question::about(blocks, self.cell.invalid(), expected.value, 0.0)
-        }
+            noise_free: variance == Known::Value(0.0),
+            margin,
+            bets: bets.cloned(),
+            looks: if self.plan.may_stop { LOOKS_IN_ALL } else { 1 },
+            ..question
+        };
+        sheet.ask_in_vain(claim, question, foreseen);
     }
 
-    /// Whether there are enough samples for the known skewness, or where that is not known enough paths that count.
-    fn enough(&self, row: &mut Row, channel: usize, variance: Known, blocks: &Moments) -> bool {
-        let skewness = self.truth.theory().and_then(|theory| theory.skewness(channel, Counted::All));
-        let Some(skewness) = skewness else {
-            let expected = self.truth.expected(channel, Counted::All);
-            let rare = expected.map_or_else(String::new, |e| self.rare(variance, e.value, blocks));
-            if !rare.is_empty() && variance != Known::Infinite {
-                row.note = rare;
-                return false;
-            }
-            return true;
+    /// What was won by betting on an estimand.
+    fn bets(&self, estimand: Estimand, channel: usize) -> Option<&Bets> {
+        let bin = match estimand {
+            Estimand::Mean => None,
+            Estimand::Bounce(bin) => Some(bin),
+            _ => return None,
+        };
+        let stream = self.plan.streams.iter().position(|s| (s.bin, s.channel) == (bin, channel))?;
+        self.cell.bets.get(stream)
+    }
+
+    /// Why no t test may decide about the mean: too few samples for the known skewness, or where that is not known too
+    /// few paths that count.
+    fn unfit(&self, channel: usize, variance: Known) -> Option<String> {
+        let theory = self.truth.theory().and_then(|theory| theory.skewness(channel, Counted::All));
+        let Some(skewness) = theory else {
+            let expected = self.truth.expected(channel, Counted::All)?;
+            return self.rare(variance, expected.value, &self.cell.blocks[channel]);
         };
         let needed = 25.0 * skewness * skewness;
-        if (self.cell.cost.n as f64) < needed {
-            row.note = format!("skewness {skewness:.0}: a t interval needs {needed:.0} samples");
-            return false;
-        }
-        true
+        let few = (self.cell.cost.n as f64) < needed;
+        few.then(|| format!("skewness {skewness:.0}: a t interval needs {needed:.0} samples"))
     }
 
     fn bounce(&self, channel: usize, bin: usize, sheet: &mut Sheet<'_>) {
         let blocks = &self.cell.bounces[bin][channel];
         let counted = counted(bin);
         let mut row = self.row(Estimand::Bounce(bin), Some(channel), blocks.mean);
+        let mut question = Question::about(blocks, self.cell.invalid(), 0.0, 0.0);
         let variance = self.known_variance(channel, counted);
         if variance != Known::Infinite {
             row.std_error = blocks.std_error();
         }
+        question.skewness = blocks.skewness().unwrap_or(0.0) / (blocks.n as f64).sqrt();
         if let Some(expected) = self.truth.expected(channel, counted) {
-            row.note = self.rare(variance, expected.value, blocks);
+            question.unfit = self.rare(variance, expected.value, blocks);
         }
-        if row.note.is_empty() && self.known_variance(channel, Counted::All) == Known::Infinite {
-            // a single bounce has a variance, but nothing says how many samples would do
-            row.note = "infinite variance of the whole: not judged".to_owned();
+        if question.unfit.is_none() && self.known_variance(channel, Counted::All) == Known::Infinite {
+            // a single bounce has a variance, but nothing says how many samples would do for a t test
+            question.unfit = Some("infinite variance of the whole: not judged".to_owned());
         }
-        let claim = sheet.claim(Claim::unbiased).filter(|_| row.note.is_empty());
-        self.compare(row, blocks, counted, claim, sheet);
+        let bounded = self.bets(row.estimand, channel).is_some_and(|bets| bets.stake.bound.is_some());
+        let foreseen = question.unfit.clone().filter(|_| !bounded);
+        row.note = foreseen.clone().unwrap_or_default();
+        self.compare(row, question, counted, (sheet.claim(Claim::unbiased), foreseen), sheet);
     }
 
-    /// Why what a bounce adds cannot be judged; empty if it can.
-    fn rare(&self, variance: Known, expected: f64, blocks: &Moments) -> String {
+    /// Why what a bounce adds cannot be judged by a t test.
+    fn rare(&self, variance: Known, expected: f64, blocks: &Moments) -> Option<String> {
         let effective = match variance {
-            Known::Infinite => return "infinite variance: not judged".to_owned(),
+            Known::Infinite => return Some("infinite variance: not judged".to_owned()),
             Known::Value(variance) => self.cell.cost.n as f64 * expected * expected / variance,
             Known::Unknown => agree::effective(blocks),
         };
-        if effective < MIN_EFFECTIVE {
-            return format!("about {effective:.0} paths get here, fewer than {MIN_EFFECTIVE}: not judged");
-        }
-        String::new()
+        (effective < MIN_EFFECTIVE)
+            .then(|| format!("about {effective:.0} paths get here, fewer than {MIN_EFFECTIVE}: not judged"))
     }
 
     /// Variance and cost against theory.
@@ -247,9 +284,15 @@ impl Subject<'_> {
             sheet.state(row);
             if let Some((claim, margin)) = claim {
                 let margin = margin * right.value.max(image.value);
-                let question = self.question(&self.cell.blocks[channel], &right);
-                let (mean, std_error) = (measured.mean, measured.std_error);
-                sheet.ask(claim, Question { mean, std_error, margin, ..question });
+                let question = Question {
+                    mean: measured.mean,
+                    std_error: measured.std_error,
+                    expected_std_error: right.std_error,
+                    expected_df: right.df,
+                    systematic: right.bound,
+                    ..Question::about(&self.cell.total[channel], self.cell.invalid(), right.value, margin)
+                };
+                sheet.ask(claim, question);
             }
         }
     }

@@ -2,12 +2,13 @@
 //! family, and lets `stats` answer. A pure function of plan and cells.
 
 use super::agree;
-use super::cell::Cell;
-use super::plan::Plan;
-use super::row::Row;
+use super::cell::{Cell, Decided};
+use super::plan::{CellPlan, Plan};
+use super::row::{Estimand, Row};
 use super::spec::{Claim, Limits};
+use super::stakes;
 use super::subject::Subject;
-use crate::stats::{Question, Verdict, judge, student};
+use crate::stats::{Answer, Question, Verdict, decide, judge, student};
 
 /// Fewer contributing paths than this, and the normal approximation of a rare bounce's mean is not to be trusted: a
 /// Bernoulli-like contribution has skewness² = 1/p, and Cochran's rule n > 25 skewness², made stricter for the small
@@ -19,6 +20,8 @@ pub(super) struct Asked {
     pub claim: usize,
     pub row: usize,
     pub question: Question,
+    /// Why theory says that these samples cannot show it to be right; it may still be shown to be wrong.
+    pub foreseen: Option<String>,
 }
 
 /// All rows of the finished cells, judged.
@@ -27,44 +30,115 @@ pub fn rows(plan: &Plan, cells: &[Option<Cell>]) -> Vec<Row> {
     let mut asked = Vec::new();
     for (index, (cell_plan, cell)) in plan.cells.iter().zip(cells).enumerate() {
         let Some(cell) = cell else { continue };
-        let truth = plan.truth(cell_plan);
-        let subject = Subject { index, plan: cell_plan, cell, truth: &truth };
-        let scene = &cell_plan.scene_label;
-        let mut sheet = Sheet { scene, claims: &plan.spec.claim, rows: &mut rows, asked: &mut asked };
-        subject.means(&mut sheet);
-        subject.spread(&mut sheet);
-        subject.image(&mut sheet);
+        of_cell(plan, cell_plan, index, cell, &mut rows, &mut asked);
     }
     agree::compare(plan, cells, &mut rows, &mut asked);
-    answer(plan, &mut rows, asked);
+    answer(plan, cells, &mut rows, asked);
     rows
 }
 
+/// Adds the rows of one cell, and what is asked about them.
+fn of_cell(
+    plan: &Plan,
+    cell_plan: &CellPlan,
+    index: usize,
+    cell: &Cell,
+    rows: &mut Vec<Row>,
+    asked: &mut Vec<Asked>,
+) {
+    let truth = plan.truth(cell_plan);
+    let subject = Subject { index, plan: cell_plan, cell, truth: &truth };
+    let levels = plan.spec.claim.iter().map(|claim| level(plan, claim)).collect();
+    let mut sheet = Sheet { scene: &cell_plan.scene_label, claims: &plan.spec.claim, levels, rows, asked };
+    subject.means(&mut sheet);
+    subject.spread(&mut sheet);
+    subject.image(&mut sheet);
+}
+
+/// Level that each question of a claim has at least, before it is known how many will be asked.
+fn level(plan: &Plan, claim: &Claim) -> f64 {
+    claim.alpha() / stakes::questions(plan, claim) as f64
+}
+
+/// Whether all that is asked about a cell is decided by the samples that it has so far. Writes into it what is.
+///
+/// Bounces that theory says will stay open do not keep it going; a whole that can only be shown to be wrong does.
+pub fn is_decided(plan: &Plan, index: usize, cell: &mut Cell) -> bool {
+    let cell_plan = &plan.cells[index];
+    if !cell_plan.may_stop {
+        return false;
+    }
+    let (mut rows, mut asked) = (Vec::new(), Vec::new());
+    of_cell(plan, cell_plan, index, cell, &mut rows, &mut asked);
+    let mut all = !asked.is_empty();
+    for Asked { claim, row, question, foreseen } in &asked {
+        let Row { estimand, channel, samples, .. } = rows[*row];
+        let known = cell.decided.iter().any(|d| (d.estimand, d.channel) == (estimand, channel));
+        if known {
+            continue;
+        }
+        match decide(question, level(plan, &plan.spec.claim[*claim])) {
+            Verdict::Inconclusive => all &= foreseen.is_some() && estimand != Estimand::Mean,
+            verdict => cell.decided.push(Decided { estimand, channel, verdict, samples }),
+        }
+    }
+    all
+}
+
 /// Asks each claim's questions as one family.
-fn answer(plan: &Plan, rows: &mut [Row], asked: Vec<Asked>) {
+fn answer(plan: &Plan, cells: &[Option<Cell>], rows: &mut [Row], asked: Vec<Asked>) {
     for (index, claim) in plan.spec.claim.iter().enumerate() {
         let family: Vec<&Asked> = asked.iter().filter(|a| a.claim == index).collect();
         let questions: Vec<Question> = family.iter().map(|a| a.question.clone()).collect();
         let level = claim.alpha() / family.len() as f64;
         for (asked, answer) in family.iter().zip(judge(&questions, claim.alpha())) {
             let row = &mut rows[asked.row];
-            let shift = row.expected_bias.unwrap_or(0.0);
-            row.ci = Some((answer.ci.0 + shift, answer.ci.1 + shift)).filter(|ci| ci.0.is_finite());
-            row.p_value = Some(answer.p_different).filter(|p| p.is_finite());
-            row.mde = Some(answer.mde).filter(|mde| mde.is_finite());
-            row.verdict = Some(answer.verdict);
-            row.note = answer.reason;
-            if row.truth.is_some_and(|truth| truth > 0.0 && row.expected_bias == Some(-truth)) {
-                row.note = format!("this estimator cannot find the light {}", row.note).trim_end().to_owned();
+            take(row, answer);
+            let decided = cells[row.cell].iter().flat_map(|cell| &cell.decided);
+            let same = |d: &&Decided| (d.estimand, d.channel) == (row.estimand, row.channel);
+            if let Some(decided) = decided.filter(|_| !row.estimand.is_agreement()).find(same) {
+                settle(row, decided);
             }
-            let undecided = matches!(answer.verdict, Verdict::Pass | Verdict::Inconclusive);
+            let undecided = matches!(row.verdict, Some(Verdict::Pass | Verdict::Inconclusive));
             if let Some(why) =
                 inexact(&asked.question, level).filter(|_| undecided && !row.estimand.is_agreement())
             {
                 row.verdict = Some(Verdict::Inconclusive);
                 row.note = why;
             }
+            if let Some(why) = asked.foreseen.as_ref().filter(|_| row.verdict == Some(Verdict::Inconclusive))
+            {
+                row.verdict = None;
+                row.note.clone_from(why);
+            }
         }
+    }
+}
+
+/// Writes an answer into its row.
+fn take(row: &mut Row, answer: Answer) {
+    let shift = row.expected_bias.unwrap_or(0.0);
+    let ci = (answer.ci.0 + shift, answer.ci.1 + shift);
+    row.ci = Some(ci).filter(|ci| ci.0.is_finite() && ci.1.is_finite());
+    row.p_value = Some(answer.p_different).filter(|p| p.is_finite());
+    row.e_value = answer.e_value;
+    row.mde = Some(answer.mde).filter(|mde| mde.is_finite());
+    row.verdict = Some(answer.verdict);
+    row.engine = (answer.verdict != Verdict::Invalid).then_some(answer.engine);
+    row.note = answer.reason;
+    if row.truth.is_some_and(|truth| truth > 0.0 && row.expected_bias == Some(-truth)) {
+        row.note = format!("this estimator cannot find the light {}", row.note).trim_end().to_owned();
+    }
+}
+
+/// What was decided at a look stays decided: its error probability was paid for.
+fn settle(row: &mut Row, decided: &Decided) {
+    if row.verdict == Some(Verdict::Inconclusive) {
+        row.verdict = Some(decided.verdict);
+        row.note = format!("decided after {} samples, open again after more", decided.samples);
+    }
+    if row.verdict == Some(decided.verdict) {
+        row.needed = Some(decided.samples);
     }
 }
 
@@ -88,6 +162,8 @@ fn inexact(question: &Question, level: f64) -> Option<String> {
 pub(super) struct Sheet<'a> {
     pub scene: &'a str,
     pub claims: &'a [Claim],
+    /// The level of each claim's questions.
+    pub levels: Vec<f64>,
     pub rows: &'a mut Vec<Row>,
     pub asked: &'a mut Vec<Asked>,
 }
@@ -106,6 +182,11 @@ impl Sheet<'_> {
     }
 
     pub fn ask(&mut self, claim: usize, question: Question) {
-        self.asked.push(Asked { claim, row: self.rows.len() - 1, question });
+        self.ask_in_vain(claim, question, None);
+    }
+
+    /// Asks although theory has foreseen that it cannot be shown to be right.
+    pub fn ask_in_vain(&mut self, claim: usize, question: Question, foreseen: Option<String>) {
+        self.asked.push(Asked { claim, row: self.rows.len() - 1, question, foreseen });
     }
 }

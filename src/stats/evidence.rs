@@ -1,10 +1,9 @@
 //! What one question shows by itself, before its family is considered.
 
-use super::question::{Question, Verdict};
-use super::student::{one_sided_p, quantile, two_sided_p, upper_quantile, welch_df};
+use super::question::{Engine, Question, Verdict};
+use super::sides::{Side, Sides};
 
-/// Power at which detectable bias and missing samples are stated.
-pub(super) const POWER: f64 = 0.9;
+pub(super) use super::sides::POWER;
 
 /// Rounding allowed, relative to the expected value, where theory says that
 /// there is no noise.
@@ -16,8 +15,10 @@ pub(super) struct Evidence {
     pub(super) p_outside: f64,
     pub(super) ci: (f64, f64),
     pub(super) mde: f64,
-    /// Of the combined standard error.
-    pub(super) df: f64,
+    pub(super) e_value: Option<f64>,
+    pub(super) engine: Engine,
+    /// Standard errors by which the margin must exceed zero for equivalence to be shown nine times in ten.
+    pub(super) reach: f64,
     /// Verdict of a rule that is no test.
     pub(super) settled: Option<(Verdict, String)>,
 }
@@ -25,17 +26,19 @@ pub(super) struct Evidence {
 /// Applies the rules for missing noise, or else the tests at `level`.
 pub(super) fn weigh(q: &Question, level: f64) -> Evidence {
     let rounding = ROUNDING * q.expected.abs().max(f64::MIN_POSITIVE);
-    if q.df < 1.0 || (q.expected_df < 1.0 && q.expected_std_error != 0.0) {
+    let sides = Sides::of(q);
+    let by_t = !sides.are_exact() && q.unfit.is_none();
+    if by_t && (q.df < 1.0 || (q.expected_df < 1.0 && q.expected_std_error != 0.0)) {
         return nothing("fewer than two blocks");
     }
     if q.noise_free && q.std_error <= rounding && q.expected_std_error == 0.0 {
         return compare_exactly(q, rounding);
     }
     // a spread of block means below the rounding of the mean is no variation
-    if !q.noise_free && q.std_error <= f64::EPSILON * q.mean.abs() {
+    if by_t && !q.noise_free && q.std_error <= f64::EPSILON * q.mean.abs() {
         return nothing("no variation was seen, so there is no interval");
     }
-    let mut evidence = test(q, level);
+    let mut evidence = test(q, &sides, level);
     if q.noise_free && q.std_error > rounding {
         let se = q.std_error;
         let reason = format!("noise-free in theory, but it varies: standard error {se:.3e}");
@@ -51,7 +54,9 @@ fn nothing(reason: &str) -> Evidence {
         p_outside: 1.0,
         ci: (f64::NEG_INFINITY, f64::INFINITY),
         mde: f64::INFINITY,
-        df: 0.0,
+        e_value: None,
+        engine: Engine::Comparison,
+        reach: f64::INFINITY,
         settled: Some((Verdict::Inconclusive, reason.to_string())),
     }
 }
@@ -74,29 +79,46 @@ fn compare_exactly(q: &Question, rounding: f64) -> Evidence {
         p_outside: if inside { 0.0 } else { 1.0 },
         ci: (difference - q.systematic, difference + q.systematic),
         mde: q.systematic + rounding,
-        df: f64::INFINITY,
         settled: Some(rule),
+        ..nothing("")
     }
 }
 
-/// The t test for a difference and the two one-sided tests for equivalence.
-fn test(q: &Question, level: f64) -> Evidence {
-    let difference = q.mean - q.expected;
-    let distance = difference.abs();
+/// Two one-sided tests for a difference, and two for equivalence.
+fn test(q: &Question, sides: &Sides<'_>, level: f64) -> Evidence {
+    let Sides { above, below } = sides;
+    let (expected, systematic) = (q.expected, q.systematic);
     let se = q.std_error.hypot(q.expected_std_error);
-    let df = welch_df(q.std_error, q.df, q.expected_std_error, q.expected_df);
-    let room = q.margin - q.systematic;
-    let t = upper_quantile(level / 2.0, df);
-    let half_width = t * se + q.systematic;
+    let brighter = above.p_above(expected + systematic);
+    let darker = below.p_below(expected - systematic);
+    // one side without evidence costs nothing
+    let p_different =
+        if sides.are_fit() { (2.0 * brighter.min(darker)).min(1.0) } else { brighter.min(darker) };
+    let room = q.margin - systematic;
+    let reaches_in = above.p_above(expected - room).max(below.p_below(expected + room));
+    let half = if sides.are_fit() { level / 2.0 } else { level };
+    let low = above.lower_limit(half) - expected - systematic;
+    let high = below.upper_limit(half) - expected + systematic;
+    let reach = |level: f64, power: f64| above.reach(level, power).max(below.reach(level, power));
     Evidence {
-        p_different: two_sided_p((distance - q.systematic).max(0.0) / se, df),
-        // of the two one-sided p-values the one towards the nearer margin
-        p_outside: if room > 0.0 { one_sided_p((room - distance) / se, df) } else { 1.0 },
-        ci: (difference - half_width, difference + half_width),
-        mde: (t + quantile(POWER, f64::INFINITY)) * se + q.systematic,
-        df,
+        p_different,
+        p_outside: if room > 0.0 { reaches_in } else { 1.0 },
+        ci: (low, high),
+        mde: reach(half, POWER) * se + systematic,
+        e_value: e_value(q, sides),
+        engine: if sides.are_exact() { Engine::Exact } else { Engine::Asymptotic },
+        // both one-sided tests must reject: each may miss half as often
+        reach: reach(level, (1.0 + POWER) / 2.0),
         settled: None,
     }
+}
+
+/// The mean of both sides' e-values, or the only one: an e-value again, whatever their dependence.
+fn e_value(q: &Question, sides: &Sides<'_>) -> Option<f64> {
+    let Side::Exact(bets) = sides.above else { return None };
+    let brighter = libm::exp(bets.log_above(q.expected + q.systematic));
+    let darker = bets.log_below(q.expected - q.systematic).map(libm::exp);
+    Some(darker.map_or(brighter, |darker| 0.5 * brighter + 0.5 * darker))
 }
 
 pub(super) fn too_coarse(q: &Question) -> String {
@@ -137,7 +159,6 @@ mod tests {
             ..Question::example()
         };
         let e = weigh(&q, 0.01);
-        close(e.df, 14.891082368958473);
         close(e.p_different, 0.1545161776089954);
         close(e.p_outside, 0.0016273670145872247);
         close(e.ci.0, -2.724886902301587);
@@ -194,6 +215,6 @@ mod tests {
         // against a noisy reference it is a test like any other
         let noisy = Question { expected_std_error: 0.1, expected_df: 9.0, ..exact };
         let e = weigh(&noisy, 0.01);
-        assert!(e.settled.is_none() && e.df == 9.0);
+        assert!(e.settled.is_none() && e.engine == Engine::Asymptotic);
     }
 }

@@ -1,18 +1,19 @@
-//! From measurements to verdicts: a fixed-sample, family-wise engine.
+//! From measurements to verdicts: bets where samples allow them, t tests elsewhere, one error rate for the family.
 
-use super::evidence::{Evidence, POWER, too_coarse, weigh};
+use super::evidence::{Evidence, too_coarse, weigh};
 use super::multiplicity::{bonferroni, holm};
-pub use super::question::{Answer, Question, Verdict};
-use super::student::{quantile, upper_quantile};
+pub use super::question::{Answer, Engine, Question, Verdict};
 
 /// Answers all questions of a run as one family, in their order.
 ///
 /// With probability 1 - `alpha` at least, no true expected value is called
 /// FAIL, and likewise no difference beyond its margin PASS, over the run.
-/// FAIL: the t test (Welch 1947) finds a difference larger than the
-/// reference's systematic error. PASS: two one-sided tests (Schuirmann 1987)
-/// find it smaller than the margin. Both after Holm (1979). Where both hold,
-/// PASS needs the simultaneous interval to lie inside the margin, too.
+/// FAIL: bets, or else the t test (Welch 1947), find a difference larger than
+/// the reference's systematic error. PASS: two one-sided tests (Schuirmann
+/// 1987) find it smaller than the margin. Both after Holm (1979); an e-value e
+/// counts as the p-value 1/e, which makes it e-Holm's test (Vovk & Wang 2021).
+/// Where both hold, PASS needs the simultaneous interval to lie inside the
+/// margin, too.
 ///
 /// Invalid questions do not count as members of the family. Nothing panics: an
 /// `alpha` outside 0..1, a margin that is not positive, and numbers that are
@@ -32,12 +33,25 @@ pub fn judge(questions: &[Question], alpha: f64) -> Vec<Answer> {
         let q = &questions[valid[k]];
         let (verdict, reason) = match e.settled {
             Some(rule) => rule,
-            None => conclude(q, &e, different[k], equivalent[k], level),
+            None => conclude(q, &e, different[k], equivalent[k]),
         };
-        let Evidence { p_different, p_outside, ci, mde, .. } = e;
-        answers[valid[k]] = Answer { verdict, reason, p_different, p_outside, ci, mde };
+        let Evidence { p_different, p_outside, ci, mde, e_value, engine, .. } = e;
+        answers[valid[k]] = Answer { verdict, reason, p_different, p_outside, ci, mde, e_value, engine };
     }
     answers
+}
+
+/// Answers one question by itself, at `level`: for a look before the last sample is in, with the level that it will have
+/// at least when its family is judged.
+pub fn decide(question: &Question, level: f64) -> Verdict {
+    if question.defect(level).is_some() {
+        return Verdict::Invalid;
+    }
+    let e = weigh(question, level);
+    match &e.settled {
+        Some((verdict, _)) => *verdict,
+        None => conclude(question, &e, e.p_different <= level, e.p_outside <= level).0,
+    }
 }
 
 /// The answer to a question with a defect, and a placeholder for all others.
@@ -49,11 +63,13 @@ fn invalid(defect: Option<String>) -> Answer {
         p_outside: f64::NAN,
         ci: (f64::NAN, f64::NAN),
         mde: f64::NAN,
+        e_value: None,
+        engine: Engine::Comparison,
     }
 }
 
 /// Verdict and reason, given what Holm's test rejects.
-fn conclude(q: &Question, e: &Evidence, different: bool, equivalent: bool, level: f64) -> (Verdict, String) {
+fn conclude(q: &Question, e: &Evidence, different: bool, equivalent: bool) -> (Verdict, String) {
     let difference = q.mean - q.expected;
     let Evidence { p_different, p_outside, ci: (low, high), .. } = *e;
     let margin = q.margin;
@@ -68,16 +84,18 @@ fn conclude(q: &Question, e: &Evidence, different: bool, equivalent: bool, level
         let shown = format!("difference {difference:.3e} is significant, p = {p_different:.1e}");
         return (Verdict::Fail, shown);
     }
-    let reason = if q.systematic >= margin { too_coarse(q) } else { missing(q, e.df, level) };
+    let reason = match &q.unfit {
+        _ if q.systematic >= margin => too_coarse(q),
+        Some(why) if e.reach == f64::INFINITY => why.clone(),
+        _ => missing(q, e.reach),
+    };
     (Verdict::Inconclusive, reason)
 }
 
 /// How many times more samples would show equivalence, were there no
-/// difference, at `level`, with 90 % power and the same number of blocks.
-fn missing(q: &Question, df: f64, level: f64) -> String {
-    // both one-sided tests must reject: each may miss half as often
-    let t = upper_quantile(level, df) + quantile((1.0 + POWER) / 2.0, f64::INFINITY);
-    let enough = (q.margin - q.systematic) / t;
+/// difference, with 90 % power, where the margin must be `reach` standard errors.
+fn missing(q: &Question, reach: f64) -> String {
+    let enough = (q.margin - q.systematic) / reach;
     // measuring longer does not make the reference any better
     let left = enough.powi(2) - q.expected_std_error.powi(2);
     let factor = q.std_error.powi(2) / left;

@@ -1,5 +1,6 @@
 //! What [`judge`](super::judge::judge) is asked and what it answers.
 
+use super::bets::Bets;
 use super::moments::Moments;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -26,6 +27,28 @@ impl fmt::Display for Verdict {
             Verdict::Inconclusive => "INCONCLUSIVE",
             Verdict::Fail => "FAIL",
             Verdict::Invalid => "INVALID",
+        })
+    }
+}
+
+/// What a verdict rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Engine {
+    /// Bets: the error probability holds for any number of samples, at any stopping time.
+    Exact,
+    /// A t test decides at least one side: its error probability is approached as samples grow.
+    Asymptotic,
+    /// Theory and measurement are without noise.
+    Comparison,
+}
+
+impl fmt::Display for Engine {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.pad(match self {
+            Engine::Exact => "exact",
+            Engine::Asymptotic => "asymptotic",
+            Engine::Comparison => "comparison",
         })
     }
 }
@@ -57,6 +80,15 @@ pub struct Question {
     /// Why the caller knows that there is no number to judge, such as a NaN,
     /// an infinity or a negative radiance among the samples.
     pub invalid: Option<String>,
+    /// What was won by betting on the samples, where that was done.
+    pub bets: Option<Bets>,
+    /// Skewness of the distribution of `mean`: that of a sample by √n.
+    pub skewness: f64,
+    /// How many times the measurement is looked at, this one included, before
+    /// the last sample is in: a t test has to share its level among them.
+    pub looks: u32,
+    /// Why no t test may decide, such as a tail that is too heavy for one.
+    pub unfit: Option<String>,
 }
 
 impl Question {
@@ -73,6 +105,10 @@ impl Question {
             margin,
             noise_free: false,
             invalid,
+            bets: None,
+            skewness: 0.0,
+            looks: 1,
+            unfit: None,
         }
     }
 
@@ -94,8 +130,12 @@ impl Question {
                 "the reference's standard error is not finite or negative",
             ),
         ];
-        let unmet = requirements.iter().find(|(met, _)| !met);
-        self.invalid.clone().or(unmet.map(|(_, reason)| reason.to_string()))
+        let unmet = requirements.iter().find(|(met, _)| !met).map(|(_, reason)| reason.to_string());
+        let void = self.bets.as_ref().filter(|bets| bets.void > 0).map(|bets| match bets.stake.bound {
+            Some(bound) => format!("{} samples exceed the bound {bound:.6e}, or are no numbers", bets.void),
+            None => format!("{} samples are no non-negative numbers", bets.void),
+        });
+        self.invalid.clone().or(void).or(unmet)
     }
 }
 
@@ -114,6 +154,10 @@ impl Question {
             margin: 1e-3,
             noise_free: false,
             invalid: None,
+            bets: None,
+            skewness: 0.0,
+            looks: 1,
+            unfit: None,
         }
     }
 }
@@ -138,6 +182,11 @@ pub struct Answer {
     /// Smallest absolute bias that the test at alpha / questions would have
     /// found with about 90 % power (88 % with 16 blocks); infinite if none. NaN if invalid.
     pub mde: f64,
+    /// e-value against "there is no difference but the reference's systematic
+    /// error", of the sides on which bets were made.
+    pub e_value: Option<f64>,
+    /// What the verdict rests on.
+    pub engine: Engine,
 }
 
 #[cfg(test)]

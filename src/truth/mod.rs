@@ -1,6 +1,7 @@
 //! Reference values, always with an error: closed forms, deterministic solutions, stored images of an independent renderer
 //! or of our own, and which of them is used.
 
+pub mod bound;
 pub mod choice;
 mod closed_form;
 pub mod deterministic;

@@ -33,11 +33,13 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         block: 2,
         rays: 0.0,
         finds_all: true,
+        streams: Vec::new(),
+        may_stop: false,
         pixels: u64::from(width) * u64::from(height),
         scene,
         estimator,
     };
-    let Some(cell) = pool(options)?.install(|| run_cell(&plan, stop, &|_| ())) else {
+    let Some(cell) = pool(options)?.install(|| run_cell(&plan, stop, &|_| (), &|_| false)) else {
         eprintln!("interrupted: nothing was written");
         return Ok(INTERRUPTED);
     };

@@ -77,7 +77,10 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Vec<Opti
         let label = plan.label(cell_plan);
         progress.cell(&label);
         let start = Instant::now();
-        let cell = pool.install(|| run_cell(cell_plan, stop, &|rays| progress.rays(rays)));
+        let cell = pool.install(|| {
+            let is_decided = |cell: &mut Cell| verdict::is_decided(plan, i, cell);
+            run_cell(cell_plan, stop, &|rays| progress.rays(rays), &is_decided)
+        });
         seconds.push(start.elapsed().as_secs_f64());
         if cell.is_some() {
             progress.done(&label, i + 1, plan, seconds[i]);

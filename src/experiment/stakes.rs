@@ -1,0 +1,84 @@
+//! What is bet on, how many questions will be asked, and when a cell may stop: all that follows from the plan, before the
+//! first sample.
+
+use super::cell::TILES;
+use super::ledger::Stream;
+use super::plan::{CellPlan, Plan};
+use super::spec::Claim;
+use super::subject::counted;
+use crate::estimator::BINS;
+use crate::scene::library::SceneKind;
+use crate::stats::Stake;
+use crate::stats::power::Samples;
+use crate::truth::{Counted, Known, Truth, bound};
+
+/// Lays the stakes of each cell.
+pub fn lay(plan: &mut Plan) {
+    let laid: Vec<_> = plan.cells.iter().map(|cell| (streams(plan, cell), may_stop(plan, cell))).collect();
+    for (cell, (streams, may_stop)) in plan.cells.iter_mut().zip(laid) {
+        (cell.streams, cell.may_stop) = (streams, may_stop);
+    }
+}
+
+/// Paths are bet on where a claim asks for their mean and the truth has no noise. The realizations of an image are too
+/// few and too much alike for bets: there a t test decides.
+fn streams(plan: &Plan, cell: &CellPlan) -> Vec<Stream> {
+    let claimed = plan.spec.claim.iter().filter_map(Claim::unbiased).any(|l| l.covers(&cell.scene_label));
+    if cell.pixels > 1 || !claimed {
+        return Vec::new();
+    }
+    let truth = plan.truth(cell);
+    let bins = (0..BINS).map(|bin| (Some(bin), counted(bin)));
+    let all = std::iter::once((None, Counted::All)).chain(bins);
+    let stream = |(bin, counted): (Option<usize>, Counted), channel: usize| {
+        Some(Stream { bin, channel, stake: stake(&cell.scene, cell, &truth, channel, counted)? })
+    };
+    all.flat_map(|what| (0..3).filter_map(move |channel| stream(what, channel))).collect()
+}
+
+fn stake(
+    scene: &SceneKind,
+    cell: &CellPlan,
+    truth: &Truth,
+    channel: usize,
+    counted: Counted,
+) -> Option<Stake> {
+    let expected = truth.expected(channel, counted).filter(|e| e.std_error == 0.0 && e.value > 0.0)?;
+    let steady = truth.theory().is_some_and(|t| t.central(channel, counted, 2) == Known::Value(0.0));
+    if steady {
+        return None; // without noise there is nothing to win: values are compared
+    }
+    let bound = bound::of(scene, &cell.estimator, channel, counted);
+    let stake = Stake { scale: expected.value, bound: bound.filter(|bound| *bound > expected.value) };
+    stake.defect().is_none().then_some(stake)
+}
+
+/// Cells that others are compared with, and images, of which one wants to see as much as was asked for, go on to the end.
+fn may_stop(plan: &Plan, cell: &CellPlan) -> bool {
+    let here = |claim: &Claim| claim.scene().is_none_or(|scene| *scene == cell.scene_label);
+    let compared = plan.spec.claim.iter().any(|c| matches!(c, Claim::Agree { .. }) && here(c));
+    let judged = plan.spec.claim.iter().filter_map(Claim::unbiased).any(|l| l.covers(&cell.scene_label));
+    judged && !compared && cell.pixels == 1
+}
+
+/// What the samples of a cell are like, in one channel, for planning how many are needed.
+pub fn samples(cell: &CellPlan, bin: Option<usize>, channel: usize, variance: f64) -> Samples {
+    let stream = cell.streams.iter().find(|s| (s.bin, s.channel) == (bin, channel));
+    let bets = stream.and_then(|s| Some((s.stake.bound? - s.stake.scale, s.per_bet())));
+    Samples { variance, bets }
+}
+
+/// At most so many questions are asked under a claim.
+pub fn questions(plan: &Plan, claim: &Claim) -> usize {
+    let about = |cell: &&CellPlan| claim.scene().is_none_or(|scene| *scene == cell.scene_label);
+    let cells = plan.cells.iter().filter(about);
+    let tiles = (TILES * TILES) as usize;
+    let of_cell = |cell: &CellPlan| match claim {
+        Claim::Unbiased(_) | Claim::Agree { .. } => 3 * (BINS + 1),
+        Claim::Tiles(_) if cell.pixels > 1 => 3 * tiles,
+        Claim::Tiles(_) => 0,
+        Claim::Variance(_) => 3,
+        Claim::Cost(_) => 1,
+    };
+    cells.map(of_cell).sum::<usize>().max(1)
+}
