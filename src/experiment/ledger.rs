@@ -17,8 +17,8 @@ pub struct Stream {
 }
 
 /// So many realizations are averaged before they are bet on, because a bet costs as much as a bounce. It loses no power
-/// for differences below a tenth of the mean: shares of a fortune that are best for those are far below 1 [own].
-const PER_BET: u64 = 8;
+/// for differences of a few percent of the mean: the shares of a fortune that are best for those are far below 1 [own].
+const PER_BET: u64 = 16;
 
 impl Stream {
     /// Realizations that are averaged before they are bet on. Where a sample may be many times the mean, which can only
@@ -74,10 +74,11 @@ impl Ledger {
         if self.order.is_empty() {
             return;
         }
-        self.single.bet(1.0, tally, total);
+        // light that was scattered k times took k rays at least
+        self.single.bet(1.0, rays as usize + 1, tally, total);
         self.waiting += 1;
         if self.waiting == PER_BET {
-            self.several.bet(1.0 / PER_BET as f64, tally, total);
+            self.several.bet(1.0 / PER_BET as f64, BINS, tally, total);
             self.waiting = 0;
         }
     }
@@ -85,7 +86,7 @@ impl Ledger {
     /// Bets on what is left, and gives what was won.
     pub fn close(&mut self, tally: &Tally, total: Rgb) -> Vec<Bets> {
         if self.waiting > 0 && !self.order.is_empty() {
-            self.several.bet(1.0 / self.waiting as f64, tally, total);
+            self.several.bet(1.0 / self.waiting as f64, BINS, tally, total);
         }
         let won = |stream: &Stream| {
             let sitting = if stream.per_bet() == 1 { &self.single } else { &self.several };
@@ -97,17 +98,24 @@ impl Ledger {
 }
 
 impl Sitting {
+    /// Bets on what was added since the last bet, to the first `bins` bins and in all.
     #[inline]
-    fn bet(&mut self, share: f64, tally: &Tally, total: Rgb) {
+    fn bet(&mut self, share: f64, bins: usize, tally: &Tally, total: Rgb) {
         self.bets += 1;
-        for (bin, tables) in self.tables.iter_mut().enumerate() {
-            let sum = if bin < BINS { tally.bounces[bin] } else { total };
-            // most paths add nothing to most bins
-            if !tables.is_empty() && sum != self.before[bin] {
-                let added = (sum - self.before[bin]) * share;
-                tables.iter_mut().for_each(|(stream, table)| table.push(added[stream.channel]));
-                self.before[bin] = sum;
-            }
+        for bin in 0..bins.min(BINS) {
+            self.bet_on(bin, share, tally.bounces[bin]);
+        }
+        self.bet_on(BINS, share, total);
+    }
+
+    #[inline]
+    fn bet_on(&mut self, bin: usize, share: f64, sum: Rgb) {
+        let tables = &mut self.tables[bin];
+        // most paths add nothing to most bins
+        if !tables.is_empty() && sum != self.before[bin] {
+            let added = (sum - self.before[bin]) * share;
+            tables.iter_mut().for_each(|(stream, table)| table.push(added[stream.channel]));
+            self.before[bin] = sum;
         }
     }
 }

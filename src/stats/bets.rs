@@ -10,6 +10,7 @@
 //! do not depend on m. So they are all that is kept; blocks merge by adding them, and every m is tested afterwards, which
 //! inverts to confidence limits that hold at all times together.
 
+use multiversion::multiversion;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::LN_2;
 
@@ -184,24 +185,12 @@ impl Product {
 
     #[inline]
     fn multiply(&mut self, grid: &[f64; BETS], y: f64) {
-        for (mantissa, c) in self.mantissa.iter_mut().zip(grid) {
-            *mantissa *= 1.0 + c * y;
-        }
+        multiply(&mut self.mantissa, grid, y);
         self.pending += 1;
         if self.pending == BEFORE_SPLIT {
-            self.split();
+            split(&mut self.mantissa, &mut self.exponent);
+            self.pending = 0;
         }
-    }
-
-    /// Moves the powers of two into the exponents.
-    #[inline]
-    fn split(&mut self) {
-        for (mantissa, exponent) in self.mantissa.iter_mut().zip(&mut self.exponent) {
-            let bits = mantissa.to_bits();
-            *exponent += (bits >> 52) as i64 - 1023;
-            *mantissa = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000);
-        }
-        self.pending = 0;
     }
 
     fn logs(&self) -> [f64; BETS] {
@@ -210,6 +199,24 @@ impl Product {
             *log = self.exponent[j] as f64 * LN_2 + libm::log(self.mantissa[j]);
         }
         logs
+    }
+}
+
+// the same bits from each of them: no product is fused with a sum
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn multiply(mantissa: &mut [f64; BETS], grid: &[f64; BETS], y: f64) {
+    for (mantissa, c) in mantissa.iter_mut().zip(grid) {
+        *mantissa *= 1.0 + c * y;
+    }
+}
+
+/// Moves the powers of two into the exponents.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
+fn split(mantissa: &mut [f64; BETS], exponent: &mut [i64; BETS]) {
+    for (mantissa, exponent) in mantissa.iter_mut().zip(exponent) {
+        let bits = mantissa.to_bits();
+        *exponent += (bits >> 52) as i64 - 1023;
+        *mantissa = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000);
     }
 }
 
