@@ -166,6 +166,12 @@ impl ClosedForm {
         rays.is_finite().then_some(rays)
     }
 
+    /// Probabilities of 0, 1, ... `most` rays a realization, where known.
+    pub fn lengths(&self, most: usize) -> Option<Vec<f64>> {
+        let Theory::Enclosure { enclosure, seen, .. } = &self.theory else { return None };
+        Walk::new(enclosure, &self.estimator)?.lengths(seen, most)
+    }
+
     /// Whether every realization traces the same number of rays: nothing ends a walk but its clamp.
     pub fn rays_are_certain(&self) -> bool {
         let Theory::Enclosure { enclosure, .. } = &self.theory else { return false };

@@ -141,6 +141,11 @@ impl Enclosure {
         self.patches.iter().all(|p| *p == self.patches[0]) && self.sees.iter().all(|row| is_closed(row))
     }
 
+    /// Whether no ray escapes.
+    pub fn is_closed(&self) -> bool {
+        self.sees.iter().all(|row| is_closed(row))
+    }
+
     /// P_ij, each times a weight for going from a patch to number j.
     pub fn weighted(&self, weight: impl Fn(&Wall, usize) -> f64) -> Matrix {
         let entry =

@@ -10,6 +10,7 @@ pub mod enclosure;
 pub mod gain;
 pub mod gallery;
 pub mod layers;
+mod lengths;
 pub mod linear;
 pub mod moments;
 pub mod optics;

@@ -44,6 +44,18 @@ impl<'a> Walk<'a> {
         (!random).then_some(walk)
     }
 
+    pub(super) fn enclosure(&self) -> &Enclosure {
+        self.enclosure
+    }
+
+    pub(super) fn branches(&self) -> u32 {
+        self.branches
+    }
+
+    pub(super) fn samples_lights(&self) -> bool {
+        self.technique != Technique::Direction
+    }
+
     /// Throughput is the same number on all paths, or its roulette amounts to q = albedo.
     fn throughput_is_deterministic(&self) -> bool {
         self.enclosure.has_one_albedo() || self.throughput_is_albedo()
@@ -70,7 +82,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Expected number of rays continued after a vertex on `patch` at depth `bounce`.
-    fn children(&self, bounce: u32, patch: &Wall) -> f64 {
+    pub(super) fn children(&self, bounce: u32, patch: &Wall) -> f64 {
         if self.continues(bounce) { f64::from(self.branches) * self.q(bounce, patch) } else { 0.0 }
     }
 
@@ -96,7 +108,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Whether a vertex at depth `bounce` sends a shadow ray.
-    fn samples_light(&self, bounce: u32) -> bool {
+    pub(super) fn samples_light(&self, bounce: u32) -> bool {
         self.technique != Technique::Direction
             && self.enclosure.patches().iter().any(|p| p.le != Rgb::ZERO)
             && self.roulette.reaches(bounce + 1)
