@@ -11,7 +11,10 @@ mod judge_rates;
 pub mod moments;
 pub mod multiplicity;
 mod question;
+#[cfg(test)]
+mod source;
 pub mod student;
+pub mod tails;
 
 pub use judge::{Answer, Question, Verdict, judge};
 pub use moments::Moments;
