@@ -4,13 +4,17 @@
 //! distribution theory, and [`judge()`] turns measurements into verdicts. All
 //! error rates promised are those of the whole family of questions.
 
+pub mod binomial;
 mod evidence;
 pub mod judge;
 #[cfg(test)]
 mod judge_rates;
+pub mod law;
 pub mod moments;
 pub mod multiplicity;
 mod question;
+pub mod rate;
+pub mod replicates;
 #[cfg(test)]
 mod source;
 pub mod student;
