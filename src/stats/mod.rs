@@ -15,6 +15,8 @@ pub mod multiplicity;
 mod question;
 pub mod rate;
 pub mod replicates;
+pub mod rivals;
+pub mod skewed;
 #[cfg(test)]
 mod source;
 pub mod student;
