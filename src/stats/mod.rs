@@ -3,6 +3,10 @@
 //! [`Moments`] condenses samples, [`student`] and [`multiplicity`] hold the
 //! distribution theory, and [`judge()`] turns measurements into verdicts. All
 //! error rates promised are those of the whole family of questions.
+//!
+//! Whether a mean may be judged at all: [`tails`], [`tally`], [`replicates`], [`skewed`].
+//! Questions that no mean answers: [`law`], [`rate`], [`trend`]. How good the verdicts
+//! are, and those of others: [`binomial`], [`rivals`].
 
 pub mod binomial;
 mod evidence;
@@ -21,6 +25,10 @@ pub mod skewed;
 mod source;
 pub mod student;
 pub mod tails;
+pub mod tally;
+#[cfg(test)]
+mod tally_rates;
+pub mod trend;
 
 pub use judge::{Answer, Question, Verdict, judge};
 pub use moments::Moments;

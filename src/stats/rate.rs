@@ -50,11 +50,11 @@ pub fn slope(levels: &[(f64, Vec<f64>)]) -> Option<Rate> {
     let r = replicates as f64;
     let std_error = libm::sqrt(spread.m2 * (r - 1.0) / r);
     let half = student::upper_quantile((1.0 - CONFIDENCE) / 2.0, r - 1.0) * std_error;
-    (slope.is_finite() && half.is_finite()).then(|| Rate { slope, low: slope - half, high: slope + half })
+    (slope.is_finite() && half.is_finite()).then_some(Rate { slope, low: slope - half, high: slope + half })
 }
 
 /// Slope of the line through (x, y) with the least squares in y; NaN for one x.
-fn least_squares(points: &[(f64, f64)]) -> f64 {
+pub(super) fn least_squares(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let mean_x = points.iter().map(|p| p.0).sum::<f64>() / n;
     let mean_y = points.iter().map(|p| p.1).sum::<f64>() / n;
