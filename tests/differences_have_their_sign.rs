@@ -1,7 +1,7 @@
 //! Promise: an image beside a stored one of another resolution shows where it is too bright and where too dark, block
 //! by block, with the standard error of both; the map beside the picture has the colours that its legend states.
 
-use furnace::experiment::cell::Pixels;
+use furnace::experiment::pixels::Pixels;
 use furnace::report::difference::{self, Difference};
 use furnace::report::images;
 use furnace::scene::Rgb;

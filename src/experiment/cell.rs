@@ -1,9 +1,12 @@
 //! What is kept of the realizations: mergeable moments, never single samples.
 
 use super::ledger::{LENGTHS, Ledger, Stream};
+use super::pixels::Pixels;
 use super::row::Estimand;
 use crate::estimator::{BINS, Tally};
 use crate::scene::Rgb;
+use crate::stats::replicates;
+use crate::stats::tails::Tail;
 use crate::stats::{Bets, Moments, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -36,24 +39,13 @@ pub struct Block {
     pub pixels: Pixels,
     /// What was won by betting, a stream each.
     pub bets: Vec<Bets>,
+    /// The largest values.
+    pub tails: [Tail; 3],
+    /// Of the realizations' values and rays, in their order.
+    key: u64,
     ledger: Ledger,
     sum: Rgb,
     pass: Rgb,
-}
-
-/// Moments of each pixel's samples, in structure-of-arrays form.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pixels {
-    /// Pixels from left to right.
-    pub width: u32,
-    /// Pixels from top to bottom.
-    pub height: u32,
-    /// Samples a pixel.
-    pub n: u64,
-    /// Mean of each pixel, row by row from the top left.
-    pub mean: Vec<Rgb>,
-    /// Sum of squared deviations of each pixel.
-    pub m2: Vec<Rgb>,
 }
 
 impl Block {
@@ -68,6 +60,8 @@ impl Block {
             tally: Tally::default(),
             pixels: Pixels { width, height, n: 0, mean: empty.clone(), m2: empty },
             bets: Vec::new(),
+            tails: Default::default(),
+            key: 0,
             ledger: Ledger::new(streams),
             sum: Rgb::ZERO,
             pass: Rgb::ZERO,
@@ -92,6 +86,11 @@ impl Block {
         let value = self.pass / pixels;
         self.zeros += u64::from(value == Rgb::ZERO);
         push(&mut self.total, value);
+        self.key = replicates::chain(self.key, rays);
+        for (tail, x) in self.tails.iter_mut().zip(value.to_array()) {
+            tail.push(x);
+            self.key = replicates::chain(self.key, x.to_bits());
+        }
         self.cost.push(rays as f64);
         self.sum += value;
         self.ledger.realization(rays, tally, self.sum);
@@ -142,6 +141,12 @@ pub struct Cell {
     pub bets: Vec<Bets>,
     /// How many realizations took 0, 1, 2, ... rays; the last bin holds all longer ones.
     pub lengths: Vec<u64>,
+    /// The largest values.
+    pub tails: [Tail; 3],
+    /// Blocks that are the same, realization by realization, as an earlier one.
+    pub repeats: u64,
+    /// Correlation of each block's mean with the next one's, and its two-sided p-value.
+    pub serial: [Option<(f64, f64)>; 3],
     /// What was seen on the way, at numbers of samples that grow in proportion.
     pub history: Vec<Snapshot>,
     /// Questions that were decided before the last sample was in.
@@ -151,6 +156,12 @@ pub struct Cell {
     /// Pixel by pixel; empty for a probe. Kept as an image, not in the store.
     #[serde(skip)]
     pub pixels: Pixels,
+    /// Of each block; known while sampling.
+    #[serde(skip)]
+    keys: Vec<u64>,
+    /// Of each block; known while sampling.
+    #[serde(skip)]
+    means: Vec<Rgb>,
 }
 
 /// What a cell had seen after some of its blocks.
@@ -190,8 +201,13 @@ pub struct Measured {
 }
 
 impl Cell {
-    /// Sums up the image, once all blocks are in.
+    /// Looks at the blocks together and sums up the image, once all blocks are in.
     pub fn finish(&mut self) {
+        self.repeats = replicates::repeats(&self.keys) as u64;
+        self.serial = [0, 1, 2].map(|c| {
+            let means: Vec<f64> = self.means.iter().map(|mean| mean[c]).collect();
+            replicates::lag_correlation(&means)
+        });
         let pixels = &self.pixels;
         if !pixels.is_image() {
             return;
@@ -213,6 +229,9 @@ impl Cell {
         self.cost.merge(&block.cost);
         let mean = |moments: &Channels| Rgb::from_array(moments.map(|m| m.mean));
         push(&mut self.blocks, mean(&block.total));
+        self.means.push(mean(&block.total));
+        self.keys.push(block.key);
+        self.tails.iter_mut().zip(&block.tails).for_each(|(ours, theirs)| ours.merge(theirs));
         self.bounces.resize(BINS, Channels::default());
         let paths = block.cost.n as f64 * f64::from(block.pixels.width) * f64::from(block.pixels.height);
         for (bounce, &sum) in self.bounces.iter_mut().zip(&block.tally.bounces) {
@@ -266,48 +285,4 @@ pub(super) fn complaint(non_finite: u64, negative: u64, runaway: u64) -> Option<
     told(non_finite, "contributions were not finite")
         .or_else(|| told(negative, "contributions were negative"))
         .or_else(|| told(runaway, "walks ran away and were cut"))
-}
-
-impl Pixels {
-    /// Adds the next samples.
-    pub(super) fn merge(&mut self, other: &Pixels) {
-        if self.n == 0 {
-            *self = other.clone();
-            return;
-        }
-        let n = (self.n + other.n) as f64;
-        let (share, cross) = (other.n as f64 / n, self.n as f64 * other.n as f64 / n);
-        for i in 0..self.mean.len() {
-            let delta = other.mean[i] - self.mean[i];
-            self.mean[i] += delta * share;
-            self.m2[i] += other.m2[i] + delta * delta * cross;
-        }
-        self.n += other.n;
-    }
-
-    /// Unbiased variance of one sample of each pixel; needs two samples.
-    pub fn variance(&self) -> Vec<Rgb> {
-        self.m2.iter().map(|&m2| m2 / (self.n - 1) as f64).collect()
-    }
-
-    /// Whether there is an image.
-    pub fn is_image(&self) -> bool {
-        !self.mean.is_empty()
-    }
-
-    /// Mean over one tile; pixels are independent.
-    fn tile(&self, x: u32, y: u32) -> [Measured; 3] {
-        let (w, h) = (self.width / TILES, self.height / TILES);
-        let count = f64::from(w * h);
-        let (mut mean, mut m2) = (Rgb::ZERO, Rgb::ZERO);
-        for row in y * h..(y + 1) * h {
-            for column in x * w..(x + 1) * w {
-                let i = (row * self.width + column) as usize;
-                mean += self.mean[i];
-                m2 += self.m2[i];
-            }
-        }
-        let samples = ((self.n - 1) * self.n) as f64;
-        [0, 1, 2].map(|c| Measured { mean: mean[c] / count, std_error: (m2[c] / samples).sqrt() / count })
-    }
 }

@@ -2,9 +2,10 @@
 //! as not stopping. Which realizations a block holds, and after which blocks the error is looked at, depends on the
 //! number of pixels only.
 
-use super::cell::{self, Block, Pixels};
+use super::cell::{self, Block};
 use super::error::Error;
 use super::grid;
+use super::pixels::Pixels;
 use super::run::{WAVE_PATHS, block_of};
 use crate::estimator::{Estimate, Estimator, Property};
 use crate::sampling::Address;

@@ -29,6 +29,12 @@ pub enum Estimand {
     Agree,
     /// What one bounce adds, compared with another cell.
     AgreeBounce(usize),
+    /// How many rays each realization takes, against the law of roulette; stated is their mean.
+    Length,
+    /// Number of blocks that repeat an earlier one.
+    Repeats,
+    /// Correlation of successive blocks.
+    Serial,
 }
 
 impl fmt::Display for Estimand {
@@ -44,6 +50,9 @@ impl fmt::Display for Estimand {
             Estimand::Zeros => "zeros",
             Estimand::Agree => "agree",
             Estimand::AgreeBounce(_) => "agree_bounce",
+            Estimand::Length => "length",
+            Estimand::Repeats => "repeats",
+            Estimand::Serial => "serial",
         })
     }
 }
@@ -52,6 +61,16 @@ impl Estimand {
     /// Whether it compares two cells, of which neither is the truth.
     pub fn is_agreement(self) -> bool {
         matches!(self, Estimand::Agree | Estimand::AgreeBounce(_))
+    }
+
+    /// What is promised of an estimand that can only be refuted.
+    pub(super) fn promise(self) -> &'static str {
+        match self {
+            Estimand::Length => "paths end with the probabilities that the rule promises",
+            Estimand::Repeats => "no block repeats another",
+            Estimand::Serial => "blocks do not depend on the ones before",
+            _ => "",
+        }
     }
 
     /// The bounce or tile that it is about.

@@ -78,7 +78,8 @@ pub fn questions(plan: &Plan, claim: &Claim) -> usize {
         Claim::Tiles(_) if cell.pixels > 1 => 3 * tiles,
         Claim::Tiles(_) => 0,
         Claim::Variance(_) => 3,
-        Claim::Cost(_) => 1,
+        Claim::Cost(_) | Claim::Length(_) => 1,
+        Claim::Independent(_) => 4,
     };
     cells.map(of_cell).sum::<usize>().max(1)
 }

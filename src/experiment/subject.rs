@@ -9,7 +9,8 @@ use super::spec::Claim;
 use super::stakes;
 use super::verdict::{MIN_EFFECTIVE, Sheet};
 use crate::estimator::BINS;
-use crate::stats::{Bets, Moments, Question};
+use crate::stats::tails::Light;
+use crate::stats::{Bets, Moments, Question, skewed};
 use crate::truth::{Counted, Known, Source, Truth, Value};
 
 /// A finished cell and what is right for it.
@@ -23,13 +24,16 @@ pub(super) struct Subject<'a> {
 /// Probability with which samples must suffice for a bounce to be judged: of some thousand of them, none should stay open.
 const POWER: f64 = 0.9999;
 
+/// Level at which the tail of a mean is looked at that nobody claims anything of.
+const UNCLAIMED: f64 = 1e-3;
+
 /// The bounces that a bin holds.
 pub(super) fn counted(bin: usize) -> Counted {
     if bin + 1 == BINS { Counted::From(bin as u32) } else { Counted::Only(bin as u32) }
 }
 
 impl Subject<'_> {
-    fn row(&self, estimand: Estimand, channel: Option<usize>, mean: f64) -> Row {
+    pub(super) fn row(&self, estimand: Estimand, channel: Option<usize>, mean: f64) -> Row {
         Row::new(self.index, estimand, channel, self.cell.cost.n, mean)
     }
 
@@ -56,6 +60,7 @@ impl Subject<'_> {
         let total = &self.cell.total[channel];
         let mut row = self.row(Estimand::Mean, Some(channel), total.mean);
         let variance = self.known_variance(channel, Counted::All);
+        let claim = sheet.claim(Claim::unbiased);
         row.rays = Some(self.cell.cost.mean);
         row.note = self.truth.refused().unwrap_or_default().to_owned();
         let mut question = Question::about(total, self.cell.invalid(), 0.0, 0.0);
@@ -68,19 +73,21 @@ impl Subject<'_> {
             (foreseen, question.unfit) = (Some(row.note.clone()), Some(row.note.clone()));
         } else {
             row.std_error = total.std_error();
-            row.variance = total.variance();
             if variance == Known::Value(0.0) {
-                row.note = "noise-free".to_owned();
+                (row.variance, row.note) = (total.variance(), "noise-free".to_owned());
+            } else if variance == Known::Unknown && self.cell.tails[channel].guard().0 == Light::Red {
+                row.note = "variance and efficiency are not estimable: the tail is too heavy".to_owned();
             } else {
+                row.variance = total.variance();
                 row.rate(total.variance_std_error());
             }
             question.skewness = self.skewness(channel);
-            question.unfit = self.unfit(channel, variance);
+            let level = claim.map_or(UNCLAIMED, |(claim, _)| sheet.levels[claim]);
+            question.unfit = self.unfit(channel, variance, level);
             if let Some(why) = &question.unfit {
                 row.note.clone_from(why);
             }
         }
-        let claim = sheet.claim(Claim::unbiased);
         self.compare(row, question, Counted::All, (claim, foreseen), sheet);
     }
 
@@ -154,13 +161,17 @@ impl Subject<'_> {
 
     /// Why no t test may decide about the mean: too few samples for the known skewness, or where that is not known too
     /// few paths that count.
-    fn unfit(&self, channel: usize, variance: Known) -> Option<String> {
+    fn unfit(&self, channel: usize, variance: Known, level: f64) -> Option<String> {
         let theory = self.truth.theory().and_then(|theory| theory.skewness(channel, Counted::All));
         let Some(skewness) = theory else {
+            let (light, why) = self.cell.tails[channel].guard();
+            if light == Light::Red && variance == Known::Unknown {
+                return Some(format!("the tail is too heavy for a t test: {why}"));
+            }
             let expected = self.truth.expected(channel, Counted::All)?;
             return self.rare(variance, expected.value, &self.cell.blocks[channel]);
         };
-        let needed = 25.0 * skewness * skewness;
+        let needed = skewed::enough(skewness, level);
         let few = (self.cell.cost.n as f64) < needed;
         few.then(|| format!("skewness {skewness:.0}: a t interval needs {needed:.0} samples"))
     }

@@ -3,12 +3,13 @@
 
 use super::agree;
 use super::cell::{Cell, Decided};
-use super::plan::{CellPlan, Plan};
+use super::plan::Plan;
+use super::refute::{self, Suspicion};
 use super::row::{Estimand, Row};
 use super::spec::{Claim, Limits};
 use super::stakes;
 use super::subject::Subject;
-use crate::stats::{Answer, Question, Verdict, decide, judge, student};
+use crate::stats::{Answer, Engine, Question, Verdict, decide, judge, student};
 
 /// Fewer contributing paths than this, and the normal approximation of a rare bounce's mean is not to be trusted: a
 /// Bernoulli-like contribution has skewness² = 1/p, and Cochran's rule n > 25 skewness², made stricter for the small
@@ -26,33 +27,39 @@ pub(super) struct Asked {
 
 /// All rows of the finished cells, judged.
 pub fn rows(plan: &Plan, cells: &[Option<Cell>]) -> Vec<Row> {
-    let mut rows = Vec::new();
-    let mut asked = Vec::new();
-    for (index, (cell_plan, cell)) in plan.cells.iter().zip(cells).enumerate() {
+    let mut found = Found::default();
+    for (index, cell) in cells.iter().enumerate() {
         let Some(cell) = cell else { continue };
-        of_cell(plan, cell_plan, index, cell, &mut rows, &mut asked);
+        of_cell(plan, index, cell, &mut found);
     }
+    let Found { mut rows, mut asked, suspicions } = found;
     agree::compare(plan, cells, &mut rows, &mut asked);
     answer(plan, cells, &mut rows, asked);
+    refute::answer(&plan.spec.claim, &mut rows, &suspicions);
     rows
 }
 
+/// Rows, and what is asked about them.
+#[derive(Default)]
+struct Found {
+    rows: Vec<Row>,
+    asked: Vec<Asked>,
+    suspicions: Vec<Suspicion>,
+}
+
 /// Adds the rows of one cell, and what is asked about them.
-fn of_cell(
-    plan: &Plan,
-    cell_plan: &CellPlan,
-    index: usize,
-    cell: &Cell,
-    rows: &mut Vec<Row>,
-    asked: &mut Vec<Asked>,
-) {
+fn of_cell(plan: &Plan, index: usize, cell: &Cell, found: &mut Found) {
+    let cell_plan = &plan.cells[index];
     let truth = plan.truth(cell_plan);
     let subject = Subject { index, plan: cell_plan, cell, truth: &truth };
-    let levels = plan.spec.claim.iter().map(|claim| level(plan, claim)).collect();
-    let mut sheet = Sheet { scene: &cell_plan.scene_label, claims: &plan.spec.claim, levels, rows, asked };
+    let claims = &plan.spec.claim;
+    let levels = claims.iter().map(|claim| level(plan, claim)).collect();
+    let Found { rows, asked, suspicions } = found;
+    let mut sheet = Sheet { scene: &cell_plan.scene_label, claims, levels, rows, asked, suspicions };
     subject.means(&mut sheet);
     subject.spread(&mut sheet);
     subject.image(&mut sheet);
+    subject.process(&mut sheet);
 }
 
 /// Level that each question of a claim has at least, before it is known how many will be asked.
@@ -68,8 +75,9 @@ pub fn is_decided(plan: &Plan, index: usize, cell: &mut Cell) -> bool {
     if !cell_plan.may_stop {
         return false;
     }
-    let (mut rows, mut asked) = (Vec::new(), Vec::new());
-    of_cell(plan, cell_plan, index, cell, &mut rows, &mut asked);
+    let mut found = Found::default();
+    of_cell(plan, index, cell, &mut found);
+    let Found { rows, asked, .. } = found;
     let mut all = !asked.is_empty();
     for Asked { claim, row, question, foreseen } in &asked {
         let Row { estimand, channel, samples, .. } = rows[*row];
@@ -166,6 +174,7 @@ pub(super) struct Sheet<'a> {
     pub levels: Vec<f64>,
     pub rows: &'a mut Vec<Row>,
     pub asked: &'a mut Vec<Asked>,
+    pub suspicions: &'a mut Vec<Suspicion>,
 }
 
 impl Sheet<'_> {
@@ -175,6 +184,18 @@ impl Sheet<'_> {
             let limits = kind(claim)?;
             limits.covers(self.scene).then_some((i, limits.margin))
         })
+    }
+
+    /// The first claim of a kind about this scene that can only be refuted.
+    pub fn chance(&self, kind: impl Fn(&Claim) -> bool) -> Option<usize> {
+        let here = |claim: &Claim| claim.scene().is_none_or(|scene| scene == self.scene);
+        self.claims.iter().position(|claim| kind(claim) && here(claim))
+    }
+
+    /// States a row and what speaks against it.
+    pub fn suspect(&mut self, row: Row, claim: usize, p: f64, engine: Engine) {
+        self.rows.push(row);
+        self.suspicions.push(Suspicion { claim, row: self.rows.len() - 1, p, engine });
     }
 
     pub fn state(&mut self, row: Row) {

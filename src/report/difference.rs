@@ -2,7 +2,7 @@
 
 use super::figure::{Colour, font};
 use super::images;
-use crate::experiment::cell::Pixels;
+use crate::experiment::pixels::Pixels;
 use crate::scene::Rgb;
 use crate::truth::Reference;
 

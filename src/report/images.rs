@@ -1,7 +1,7 @@
 //! Images: EXR with everything in it, PNG to look at.
 
 use super::difference::Difference;
-use crate::experiment::cell::Pixels;
+use crate::experiment::pixels::Pixels;
 use crate::truth::Reference;
 use crate::truth::layers::Layers;
 

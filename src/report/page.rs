@@ -78,12 +78,14 @@ pub fn page(lookup: &Lookup<'_>, answer: &[String], figures: &[Drawn], pictures:
 
 fn claims(lookup: &Lookup<'_>) -> Markup {
     let about = |claim: &Claim| match claim {
-        Claim::Unbiased(l) => ("mean and each bounce", l.scene.clone(), l.margin),
-        Claim::Tiles(l) => ("means of the image's 4 × 4 tiles", l.scene.clone(), l.margin),
-        Claim::Variance(l) => ("variance", l.scene.clone(), l.margin),
-        Claim::Cost(l) => ("rays a sample", l.scene.clone(), l.margin),
+        Claim::Unbiased(l) => ("mean and each bounce", l.scene.clone(), Some(l.margin)),
+        Claim::Tiles(l) => ("means of the image's 4 × 4 tiles", l.scene.clone(), Some(l.margin)),
+        Claim::Variance(l) => ("variance", l.scene.clone(), Some(l.margin)),
+        Claim::Cost(l) => ("rays a sample", l.scene.clone(), Some(l.margin)),
+        Claim::Length(c) => ("lengths of paths", c.scene.clone(), None),
+        Claim::Independent(c) => ("independence of realizations", c.scene.clone(), None),
         Claim::Agree { estimator, roulette, margin, .. } => {
-            ("mean, against another cell", Some(format!("{estimator}, {roulette}")), *margin)
+            ("mean, against another cell", Some(format!("{estimator}, {roulette}")), Some(*margin))
         }
     };
     html! {
@@ -95,8 +97,12 @@ fn claims(lookup: &Lookup<'_>) -> Markup {
                     @match asked(lookup, claim) {
                         0 => ": nothing could be asked (the numbers below say why)",
                         count => {
-                            ": " (count) " questions, equivalent within " (100.0 * margin)
-                            " %, any false alarm with probability at most " (claim.alpha())
+                            ": " (count) " questions, "
+                            @match margin {
+                                Some(margin) => { "equivalent within " (100.0 * margin) " %" }
+                                None => "which can be refuted and never shown",
+                            }
+                            ", any false alarm with probability at most " (claim.alpha())
                         }
                     }
                 }
@@ -121,13 +127,19 @@ fn asked(lookup: &Lookup<'_>, claim: &Claim) -> usize {
         Claim::Tiles(l) => matches!(row.estimand, Estimand::Tile(_)) && l.covers(scene),
         Claim::Variance(l) => row.estimand == Estimand::Variance && l.covers(scene),
         Claim::Cost(l) => row.estimand == Estimand::Cost && l.covers(scene),
-        Claim::Agree { scene: of, .. } => {
-            row.estimand.is_agreement() && of.as_ref().is_none_or(|of| of == scene)
+        Claim::Length(c) => row.estimand == Estimand::Length && covers(&c.scene, scene),
+        Claim::Independent(c) => {
+            matches!(row.estimand, Estimand::Repeats | Estimand::Serial) && covers(&c.scene, scene)
         }
+        Claim::Agree { scene: of, .. } => row.estimand.is_agreement() && covers(of, scene),
     };
     let cells = lookup.plan.cells.iter().enumerate();
     let rows = cells.flat_map(|(i, cell)| lookup.cell(i).iter().map(|row| (*row, cell.scene_label.as_str())));
-    rows.filter(|(row, scene)| row.verdict.is_some() && about(row, scene)).count()
+    rows.filter(|(row, scene)| row.engine.is_some() && about(row, scene)).count()
+}
+
+fn covers(only: &Option<String>, scene: &str) -> bool {
+    only.as_ref().is_none_or(|only| only == scene)
 }
 
 fn verdicts(lines: &[Line]) -> Markup {

@@ -4,6 +4,7 @@
 use super::bets::Bets;
 use super::power::reach;
 use super::question::{Engine, Question};
+use super::skewed;
 use super::student::{one_sided_p, upper_quantile, welch_df};
 
 /// Power at which detectable bias and missing samples are stated.
@@ -82,7 +83,7 @@ impl Side<'_> {
     pub(super) fn lower_limit(&self, level: f64) -> f64 {
         match self {
             Side::Exact(bets) => bets.lower_limit(level),
-            Side::Asymptotic(t) => t.mean - t.std_error * t.inverse(upper_quantile(level / t.looks, t.df)),
+            Side::Asymptotic(t) => t.reaching(upper_quantile(level / t.looks, t.df)),
             Side::Unfit => f64::NEG_INFINITY,
         }
     }
@@ -91,7 +92,7 @@ impl Side<'_> {
     pub(super) fn upper_limit(&self, level: f64) -> f64 {
         match self {
             Side::Exact(bets) => bets.upper_limit(level),
-            Side::Asymptotic(t) => t.mean - t.std_error * t.inverse(-upper_quantile(level / t.looks, t.df)),
+            Side::Asymptotic(t) => t.reaching(-upper_quantile(level / t.looks, t.df)),
             Side::Unfit => f64::INFINITY,
         }
     }
@@ -118,18 +119,13 @@ impl Student {
         }
     }
 
-    /// The distance from `m` in standard errors, made symmetrical: with g the skewness of the mean,
-    /// t + g t²/3 + g² t³/27 + g/6, which is monotone and differs from Johnson's [1978] statistic by its cubic term only
-    /// [Hall 1992, J. R. Statist. Soc. B 54, eq. 2.3].
+    /// The distance from `m` in standard errors, made symmetrical.
     fn from(&self, m: f64) -> f64 {
-        let (t, g) = ((self.mean - m) / self.std_error, self.skewness);
-        if t.is_infinite() { t } else { t + g * t * t / 3.0 + g * g * t * t * t / 27.0 + g / 6.0 }
+        skewed::symmetrical((self.mean - m) / self.std_error, self.skewness)
     }
 
-    /// The distance in standard errors of which [`Student::from`] makes `y`.
-    fn inverse(&self, y: f64) -> f64 {
-        let g = self.skewness;
-        // below, the series of the cube root is exact to rounding, and the quotient is not
-        if g.abs() < 1e-9 { y } else { 3.0 / g * ((1.0 + g * (y - g / 6.0)).cbrt() - 1.0) }
+    /// So far below the mean, or above for a negative quantile, lies the limit.
+    fn reaching(&self, quantile: f64) -> f64 {
+        self.mean - self.std_error * skewed::distance(quantile, self.skewness)
     }
 }

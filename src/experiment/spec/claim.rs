@@ -16,6 +16,10 @@ pub enum Claim {
     Variance(Limits),
     /// The rays a realization are theory's.
     Cost(Limits),
+    /// Paths have the lengths that theory's law of roulette gives; can be refuted, never shown.
+    Length(Chance),
+    /// Realizations are independent: no block repeats another or follows from the one before; can be refuted, never shown.
+    Independent(Chance),
     /// All unbiased cells of a scene have the mean of one of them, total and per bounce.
     Agree {
         /// Label of the estimator that the others are compared with.
@@ -39,6 +43,7 @@ impl Claim {
     pub fn alpha(&self) -> f64 {
         match self {
             Claim::Unbiased(l) | Claim::Tiles(l) | Claim::Variance(l) | Claim::Cost(l) => l.alpha,
+            Claim::Length(c) | Claim::Independent(c) => c.alpha,
             Claim::Agree { alpha, .. } => *alpha,
         }
     }
@@ -47,6 +52,7 @@ impl Claim {
     pub fn scene(&self) -> Option<&String> {
         match self {
             Claim::Unbiased(l) | Claim::Tiles(l) | Claim::Variance(l) | Claim::Cost(l) => l.scene.as_ref(),
+            Claim::Length(c) | Claim::Independent(c) => c.scene.as_ref(),
             Claim::Agree { scene, .. } => scene.as_ref(),
         }
     }
@@ -70,6 +76,18 @@ impl Claim {
     pub fn cost(&self) -> Option<&Limits> {
         if let Claim::Cost(limits) = self { Some(limits) } else { None }
     }
+}
+
+/// Error probability of a claim that can only be refuted.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Chance {
+    /// The only scene it is about; all scenes if left out.
+    #[serde(default)]
+    pub scene: Option<String>,
+    /// Probability of any false alarm among all questions of this claim.
+    #[serde(deserialize_with = "input::inside_unit")]
+    pub alpha: f64,
 }
 
 impl Limits {
