@@ -52,6 +52,7 @@ impl Walk {
         let q = self.roulette.q(bounce, path.beta, albedo);
         let open = q > 0.0 && q < 1.0;
         let chooses = albedo != Rgb::ZERO && bounce >= self.roulette.from;
+        let matte = chooses && !x.material.bsdf.is_dirac(); // the lecture speaks of those
         let on = |survives: bool, q: f64, weight: f64| Survival { copies: u32::from(survives), q, weight };
         match self.slip.surviving() {
             Some(Surviving::NotWeighted) => Survival { copies: cx.copies(q), q, weight: 1.0 },
@@ -61,11 +62,11 @@ impl Walk {
                 let chi = 1.0 - q;
                 on(cx.u1() < chi, q, 1.0 / (1.0 - chi))
             }
-            Some(Surviving::PrintedByAlbedo) if chooses => {
+            Some(Surviving::PrintedByAlbedo) if matte => {
                 let chi = albedo.max_element();
                 on(cx.u1() < chi, 1.0 - chi, 1.0 / (1.0 - chi))
             }
-            Some(Surviving::EndsByAlbedo) if chooses => {
+            Some(Surviving::EndsByAlbedo) if matte => {
                 let q = 1.0 - albedo.max_element();
                 Survival { copies: cx.copies(q), q, weight: 1.0 / q }
             }
