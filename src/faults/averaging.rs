@@ -25,12 +25,9 @@ pub fn estimate(averaging: Averaging, walk: &Walk, ray: Ray, cx: &mut Ctx<'_>) {
 }
 
 fn path(walk: &Walk, ray: Ray, cx: &mut Ctx<'_>) -> Bins {
-    let mut record = Record::Held([Rgb::ZERO; BINS]);
-    walk.trace(ray, cx, &mut record);
-    match record {
-        Record::Held(bins) => bins,
-        _ => [Rgb::ZERO; BINS],
-    }
+    let mut bins = [Rgb::ZERO; BINS];
+    walk.trace(ray, cx, &mut Record::Held(&mut bins));
+    bins
 }
 
 fn clamped(bins: Bins) -> Bins {

@@ -123,7 +123,7 @@ impl Walk {
         let time = if self.slip == Slip::Light(Light::ShutterOpens) { 0.0 } else { cx.time() };
         let sample = |point| scene.sample_light(self.lights, (x.p, time), pick, point);
         if let Slip::Facing(Facing::LightBehind | Facing::LightNegative) = self.slip {
-            return sample(point).or_else(|| self.from_behind(x, scene, pick, point));
+            return sample(point).or_else(|| self.behind(x, scene, pick, point));
         }
         let light = sample(point)?;
         let Slip::Light(slip) = self.slip else { return Some(light) };
@@ -172,7 +172,7 @@ impl Walk {
     }
 
     /// A point on an emitter that shows `x` its back. Only where all emitters are surfaces at rest.
-    fn from_behind(&self, x: &Hit<'_>, scene: &Scene, pick: f64, point: (f64, f64)) -> Option<LightSample> {
+    fn behind(&self, x: &Hit<'_>, scene: &Scene, pick: f64, point: (f64, f64)) -> Option<LightSample> {
         let emits = |id: &usize| scene.surfaces()[*id].material.le != Rgb::ZERO;
         let ids: Vec<usize> = (0..scene.surfaces().len()).filter(emits).collect();
         if ids.len() != scene.light_count() {

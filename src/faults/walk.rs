@@ -48,16 +48,16 @@ pub struct Path<'a> {
 }
 
 /// Where contributions go.
-pub enum Record {
+pub enum Record<'r> {
     /// To the tally, as they come.
     Tally,
     /// To the tally, if they are numbers; others vanish.
     Numbers,
     /// They are held back, by bounce.
-    Held([Rgb; BINS]),
+    Held(&'r mut [Rgb; BINS]),
 }
 
-impl Record {
+impl Record<'_> {
     /// Takes a contribution.
     pub fn add(&mut self, cx: &mut Ctx<'_>, bounce: u32, radiance: Rgb) {
         match self {
@@ -82,12 +82,12 @@ impl Walk {
     }
 
     /// Follows one path from the camera.
-    pub fn trace<'a>(&self, ray: Ray, cx: &mut Ctx<'a>, record: &mut Record) {
+    pub fn trace<'a>(&self, ray: Ray, cx: &mut Ctx<'a>, record: &mut Record<'_>) {
         let path = Path { ray, beta: Rgb::ONE, pdf: None, bounce: 0, q: 1.0, last: None, first: None };
         self.follow(path, cx, record);
     }
 
-    fn follow<'a>(&self, mut path: Path<'a>, cx: &mut Ctx<'a>, record: &mut Record) {
+    fn follow<'a>(&self, mut path: Path<'a>, cx: &mut Ctx<'a>, record: &mut Record<'_>) {
         loop {
             let Some(x) = cx.hit(&path.ray) else { return };
             path.first.get_or_insert(x.frame.n);
@@ -123,7 +123,7 @@ impl Walk {
     }
 
     /// Adds what the surface emits towards where the path comes from.
-    fn emission(&self, path: &Path<'_>, x: &Hit<'_>, cx: &mut Ctx<'_>, record: &mut Record) {
+    fn emission(&self, path: &Path<'_>, x: &Hit<'_>, cx: &mut Ctx<'_>, record: &mut Record<'_>) {
         let mirrored = path.bounce > 0 && path.pdf.is_none();
         let sound = self.hit_weight(path, x, cx);
         let (beta, weight) = match self.slip.emission() {
@@ -143,7 +143,7 @@ impl Walk {
     }
 
     /// Next-event estimation. Returns the cosine at the light, if one was sampled.
-    fn direct(&self, path: &Path<'_>, x: &Hit<'_>, cx: &mut Ctx<'_>, record: &mut Record) -> Option<f64> {
+    fn direct(&self, path: &Path<'_>, x: &Hit<'_>, cx: &mut Ctx<'_>, record: &mut Record<'_>) -> Option<f64> {
         let DirectLight { radiance, weight, cos_at_light } = self.sample_direct(path, x, cx)?;
         record.add(cx, path.bounce, path.beta * radiance * weight);
         Some(cos_at_light)
