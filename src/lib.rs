@@ -9,7 +9,7 @@
 //! Every arrow is one function, every word a plain struct. Imports go downwards only (`tests/layers.rs` holds this):
 //!
 //! ```text
-//! bin -> report -> experiment -> { truth, stats };   experiment, truth -> estimator -> scene -> sampling
+//! bin -> report -> experiment -> { faults -> truth, stats };   faults, truth -> estimator -> scene -> sampling
 //! ```
 //!
 //! To test an estimator of your own, implement [`estimator::Estimate`] and look at `examples/my_estimator.rs`.
@@ -28,6 +28,7 @@
 //! | implicit, explicit, recursive | light found by chance; direct light sampled; N samples at each vertex |
 //! | realization | one independent draw of the whole measurement: a path for a probe, an image pass for a camera |
 //! | block, cell | a fixed run of realizations; one point of the grid |
+//! | fault | an estimator with a known mistake, by which the bench shows that it notices one |
 //! | truth | the right value with its error: from a closed form, an independent renderer, or another kind of estimator |
 //! | reference | a stored image with standard errors |
 //! | claim, verdict | what is promised; Pass (shown equivalent), Fail (shown different), Inconclusive, Invalid |
@@ -43,6 +44,8 @@ pub mod estimator;
 
 pub mod stats;
 pub mod truth;
+
+pub mod faults;
 
 pub mod experiment;
 

@@ -6,16 +6,17 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A layer and all that it may name: bin -> report -> experiment -> { truth, stats }; experiment, truth -> estimator ->
-/// scene -> sampling. Binaries name the crate `furnace` and stand above all.
-const LAYERS: [(&str, &[&str]); 7] = [
+/// A layer and all that it may name: bin -> report -> experiment -> { truth, stats, faults }; faults -> truth; all of
+/// them but stats -> estimator -> scene -> sampling. Binaries name the crate `furnace` and stand above all.
+const LAYERS: [(&str, &[&str]); 8] = [
     ("sampling", &["sampling"]),
     ("scene", &["scene", "sampling"]),
     ("estimator", &["estimator", "scene", "sampling"]),
     ("truth", &["truth", "estimator", "scene", "sampling"]),
+    ("faults", &["faults", "truth", "estimator", "scene", "sampling"]),
     ("stats", &["stats"]),
-    ("experiment", &["experiment", "truth", "stats", "estimator", "scene", "sampling"]),
-    ("report", &["report", "experiment", "truth", "stats", "estimator", "scene", "sampling"]),
+    ("experiment", &["experiment", "faults", "truth", "stats", "estimator", "scene", "sampling"]),
+    ("report", &["report", "experiment", "faults", "truth", "stats", "estimator", "scene", "sampling"]),
 ];
 const MAX_FILE: usize = 320;
 const MAX_FUNCTION: usize = 60;
@@ -130,6 +131,27 @@ fn imports_go_downwards() {
     assert!(wrong.is_empty(), "not downwards:\n{}", wrong.join("\n"));
 }
 
+/// What is sampled in earnest cannot be switched to a fault: nothing but the layers that choose estimators names them.
+#[test]
+fn faults_are_chosen_from_above() {
+    let chooses = ["faults", "experiment", "report", "bin", "lib"];
+    let mut wrong = Vec::new();
+    for (path, text) in sources(&root()) {
+        if chooses.contains(&layer(&path).as_str()) {
+            continue;
+        }
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let names = |line: &str| line.split(|c| !is_word(c)).any(|word| word == "faults" || word == "Faulty");
+        wrong.extend(
+            code(&text)
+                .into_iter()
+                .filter(|(_, line)| names(line))
+                .map(|(n, _)| format!("{}:{n}", path.display())),
+        );
+    }
+    assert!(wrong.is_empty(), "names faults: {}", wrong.join(", "));
+}
+
 #[test]
 fn files_and_functions_are_short() {
     let mut long = Vec::new();
@@ -161,7 +183,7 @@ fn files_and_functions_are_short() {
 fn sampling_calls_no_platform_mathematics() {
     let mut wrong = Vec::new();
     for (path, text) in sources(&root()) {
-        if !["sampling", "scene", "estimator"].contains(&layer(&path).as_str()) {
+        if !["sampling", "scene", "estimator", "faults"].contains(&layer(&path).as_str()) {
             continue;
         }
         for (number, line) in code(&text) {

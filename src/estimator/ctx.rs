@@ -75,6 +75,18 @@ impl<'a> Ctx<'a> {
         Ctx { scene, stream, tally, response: start.response, time: start.time, limit }
     }
 
+    /// The scene.
+    #[inline]
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    /// The moment at which the path happens, in [0, 1) of the exposure.
+    #[inline]
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
     /// Traces a ray: what it meets first, or `None` for the void and for black backs.
     #[inline]
     pub fn hit(&mut self, ray: &Ray) -> Option<Hit<'a>> {
@@ -146,9 +158,9 @@ impl<'a> Ctx<'a> {
         Step { ray: x.spawn(s.wi), weight: s.weight, pdf: s.pdf }
     }
 
-    /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface.
+    /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface: whether nothing stands between.
     #[inline]
-    fn visible(&mut self, x: &Hit<'_>, to_light: DVec3, surface: u32) -> bool {
+    pub fn visible(&mut self, x: &Hit<'_>, to_light: DVec3, surface: u32) -> bool {
         self.tally.rays += 1;
         self.scene.visible(&x.spawn(to_light), self.time, surface)
     }

@@ -68,6 +68,8 @@ pub struct LightSample {
     pub weight: f64,
     /// Density of the direction, the choice of the emitter included [1/sr]; `None` for a Dirac light.
     pub pdf: Option<PdfW>,
+    /// Probability with which this emitter was picked.
+    pub pmf: f64,
     /// The emitter's surface, or what stands for it.
     pub surface: u32,
 }
@@ -182,6 +184,7 @@ impl Lights {
                     le: light.intensity / squared,
                     weight: 1.0 / pmf,
                     pdf: None,
+                    pmf,
                     surface: NOWHERE,
                 };
                 (squared > 0.0).then_some(sample)
@@ -195,6 +198,7 @@ impl Lights {
                     le: sky.radiance(wi),
                     weight: 1.0 / pdf.0,
                     pdf: Some(pdf),
+                    pmf,
                     surface: SKY,
                 };
                 // rounding may carry a direction below the horizon
@@ -268,7 +272,7 @@ fn of_surface(
     };
     let pdf = PdfW(pmf * pdf.0);
     let le = surface.material.le;
-    Some(LightSample { to_light, distance, le, weight: 1.0 / pdf.0, pdf: Some(pdf), surface: id })
+    Some(LightSample { to_light, distance, le, weight: 1.0 / pdf.0, pdf: Some(pdf), pmf, surface: id })
 }
 
 #[inline]
