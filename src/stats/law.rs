@@ -28,8 +28,8 @@ pub struct Fit {
 /// [`MIN_EXPECTED`]. None if a probability is negative or NaN, their sum exceeds
 /// 1, or fewer than two pooled cells remain.
 ///
-/// Two-sided in the sense that any difference counts; as good as its
-/// approximation, i.e. to about a factor of 2 in p down to 1e-4.
+/// The p-value is an approximation, a little too small: with 1000 lengths of a
+/// geometric law, p < 1e-2, 1e-3, 1e-4 in 1.03e-2, 1.2e-3, 1.6e-4 of 200 000 simulations.
 pub fn goodness(counts: &[u64], probabilities: &[f64]) -> Option<Fit> {
     let cells = cells(counts, probabilities)?;
     let n: u64 = cells.iter().map(|cell| cell.0).sum();

@@ -28,11 +28,11 @@ pub fn holm(p: &[f64], alpha: f64) -> Vec<bool> {
 }
 
 /// Level of each of `m` independent tests that together err with probability
-/// `alpha` (Šidák 1967); larger than that of [`bonferroni`] by at most 0.03 %
+/// `alpha` (Šidák 1967); larger than that of [`bonferroni`] by at most 0.05 %
 /// below `alpha` = 1e-3. An empty family counts as one test.
 ///
 /// It holds under dependence, too, for two-sided tests of jointly normal
-/// statistics; not for skewed ones. NaN if `alpha` is not in 0..=1.
+/// statistics; not for skewed ones. NaN if `alpha` is NaN or exceeds 1.
 pub fn sidak(alpha: f64, m: usize) -> f64 {
     // 1 - (1 - alpha)^(1/m) without the loss of digits
     -libm::expm1(libm::log1p(-alpha) / m.max(1) as f64)

@@ -11,7 +11,9 @@ const MIN_REPLICATES: usize = 8;
 /// Σ d_i² with deviations d from the mean rank, the last followed by the first: in
 /// -1..=1. The p-value is normal, with the exact mean, -1/(n-1), and variance of r
 /// over all orders. Ranks, because on values the normal law fails for a heavy
-/// tail: a nominal 1 % became 2.5 % for 64 walks of infinite variance. None below 8
+/// tail: a nominal 1 % became 2.7 % for 64 walks of infinite variance; on ranks it
+/// is 0.9 to 1.0 % from 64 replicates on, 0.7 % for 20 and less below. Ties do not
+/// matter until most values are the same (0 in 9 of 10: 1.8 %). None below 8
 /// values, if all are the same, or if one is not finite.
 pub fn lag_correlation(means: &[f64]) -> Option<(f64, f64)> {
     if means.len() < MIN_REPLICATES || means.iter().any(|x| !x.is_finite()) {

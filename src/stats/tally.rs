@@ -48,6 +48,8 @@ const NAMES: [&str; 10] = [
     "tail of the largest values",
 ];
 
+const NOTHING: &str = "nothing was hit, or nothing varies";
+
 /// The ten checks of a sample of radiance.
 ///
 /// `history` holds the moments of the first n values for increasing n, the last
@@ -74,6 +76,8 @@ pub fn checks(history: &[Moments], tail: &Tail, cost: f64) -> [Check; 10] {
         std::array::from_fn(|_| (None, "a value is not finite".to_string(), Light::Red))
     } else if half.len() < MIN_POINTS {
         std::array::from_fn(|i| if i == 9 { largest(tail) } else { unknown("too few snapshots") })
+    } else if half.last().is_some_and(|all| all.m2 == 0.0) {
+        std::array::from_fn(|_| unknown(NOTHING))
     } else {
         judged(&half, tail, cost)
     };
@@ -142,7 +146,7 @@ fn between(later: &Moments, earlier: &Moments) -> Moments {
 
 fn small(last: Option<&(f64, f64)>, what: &str, green: f64, yellow: f64) -> Judged {
     match last.map(|point| point.1).filter(|value| value.is_finite()) {
-        None => unknown("nothing was hit, or nothing varies"),
+        None => unknown(NOTHING),
         Some(value) => (Some(value), format!("{what} {value:.2e}"), grade(value, green, yellow)),
     }
 }
@@ -160,7 +164,7 @@ fn grade(value: f64, green: f64, yellow: f64) -> Light {
 
 fn decreasing(points: &[(f64, f64)]) -> Judged {
     if points.iter().any(|point| !point.1.is_finite()) {
-        return unknown("nothing was hit, or nothing varies");
+        return unknown(NOTHING);
     }
     let rises = points.windows(2).filter(|pair| pair[1].1 >= pair[0].1).count();
     let falls = points.last().zip(points.first()).is_some_and(|(last, first)| last.1 < first.1);
@@ -177,7 +181,7 @@ fn exponent(points: &[(f64, f64)], ideal: f64, green: f64, yellow: f64) -> Judge
     let logs: Vec<(f64, f64)> = points.iter().map(|&(n, y)| (libm::log(n), libm::log(y))).collect();
     let slope = super::rate::least_squares(&logs);
     if !slope.is_finite() {
-        return unknown("nothing was hit, or nothing varies");
+        return unknown(NOTHING);
     }
     let text = format!("falls as n^{slope:.2}, ideally n^{ideal}");
     (Some(slope), text, grade((slope - ideal).abs(), green, yellow))
@@ -192,13 +196,13 @@ fn constant(merit: &[(f64, f64)]) -> Judged {
             let text = format!("figure of merit {:.3e}, within {:.1} %", last.1, 100.0 * change);
             (Some(change), text, grade(change, 0.10, 0.25))
         }
-        _ => unknown("nothing was hit, or nothing varies"),
+        _ => unknown(NOTHING),
     }
 }
 
 fn trend(values: &[f64]) -> Judged {
     let Some(p) = super::trend::kendall(values) else {
-        return unknown("nothing was hit, or nothing varies");
+        return unknown(NOTHING);
     };
     let light = match p {
         _ if p >= 0.01 => Light::Green,

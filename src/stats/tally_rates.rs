@@ -85,8 +85,7 @@ fn short_or_empty_or_broken_data_do_not_panic() {
     assert!(empty.iter().all(|check| check.light == Light::Yellow && check.value.is_none()));
     assert_eq!(lights(&run(5, 1, |s, _| s.exponential())), [Light::Yellow; 10]);
     for constant in [0.0, 0.7] {
-        let checks = run(1000, 1, |_, _| constant);
-        assert!(checks.iter().all(|check| check.light != Light::Red || constant > 0.0), "{checks:?}");
+        assert_eq!(lights(&run(1000, 1, |_, _| constant)), [Light::Yellow; 10]);
     }
     let broken = run(1000, 1, |s, i| if i == 600 { f64::NAN } else { s.exponential() });
     assert_eq!(lights(&broken), [Light::Red; 10]);

@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn equal_few_and_broken_values() {
-        assert_eq!(kendall(&[2.0; 9]), Some(1.0));
+        assert!((kendall(&[2.0; 9]).unwrap() - 1.0).abs() < 1e-15);
         assert_eq!((kendall(&[]), kendall(&[1.0])), (Some(1.0), Some(1.0)));
         assert_eq!(kendall(&[1.0, f64::NAN, 2.0]).or(kendall(&[f64::INFINITY])), None);
     }
