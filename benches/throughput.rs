@@ -43,7 +43,8 @@ fn paths(c: &mut Criterion) {
         let paths = realizations * u64::from(width * height);
         for (name, estimator) in estimators() {
             let address = Address::of(&["bench", scene_name, name]);
-            let run = || block_of(&scene, &estimator, &address, &[], 0..realizations);
+            let draw = |number, pixel| address.stream(number, pixel);
+            let run = || block_of(&scene, &estimator, &draw, &[], 0..realizations);
             let block = run();
             let rays = block.tally.rays as f64 / paths as f64;
             eprintln!("{scene_name} {name}: {rays:.3} rays a path, mean {:.5}", block.total[0].mean);

@@ -159,9 +159,9 @@ pub struct Cell {
     /// Of each block; known while sampling.
     #[serde(skip)]
     keys: Vec<u64>,
-    /// Of each block; known while sampling.
+    /// Value of a realization, in each block; known while sampling.
     #[serde(skip)]
-    means: Vec<Rgb>,
+    pub parts: Vec<Channels>,
 }
 
 /// What a cell had seen after some of its blocks.
@@ -205,7 +205,7 @@ impl Cell {
     pub fn finish(&mut self) {
         self.repeats = replicates::repeats(&self.keys) as u64;
         self.serial = [0, 1, 2].map(|c| {
-            let means: Vec<f64> = self.means.iter().map(|mean| mean[c]).collect();
+            let means: Vec<f64> = self.parts.iter().map(|part| part[c].mean).collect();
             replicates::lag_correlation(&means)
         });
         let pixels = &self.pixels;
@@ -229,7 +229,7 @@ impl Cell {
         self.cost.merge(&block.cost);
         let mean = |moments: &Channels| Rgb::from_array(moments.map(|m| m.mean));
         push(&mut self.blocks, mean(&block.total));
-        self.means.push(mean(&block.total));
+        self.parts.push(block.total);
         self.keys.push(block.key);
         self.tails.iter_mut().zip(&block.tails).for_each(|(ours, theirs)| ours.merge(theirs));
         self.bounces.resize(BINS, Channels::default());

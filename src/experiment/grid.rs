@@ -6,6 +6,7 @@ use super::making;
 use super::plan::CellPlan;
 use super::spec::{Grid, Spec, Streams};
 use crate::estimator::{Estimate, Estimator, Property, Roulette, Rule};
+use crate::faults::Fault;
 use crate::sampling::Address;
 use crate::scene::Scene;
 use crate::scene::library::SceneKind;
@@ -48,13 +49,14 @@ fn grid_cells(
     swept: &mut Vec<String>,
 ) -> Result<(), Error> {
     let scenes = axis(&grid.scene, "scenes", at, choices::scenes)?;
-    let estimators = axis(&grid.estimator, "estimators", at, |s| Ok(choices::estimators(s)))?;
+    let estimators = axis(&grid.estimator, "estimators", at, |s| choices::estimators(s, spec.faults))?;
     let roulettes = axis(&grid.roulette, "termination rules", at, |s| Ok(choices::roulettes(s)))?;
     for scene in &scenes {
         let built = scene.choice.value.build();
         for estimator in &estimators {
             for roulette in &roulettes {
-                let whole = estimator.choice.value.with(roulette.choice.value);
+                let (untermined, fault) = estimator.choice.value;
+                let whole = untermined.with(roulette.choice.value);
                 lit(&whole, &built).map_err(|e| at(scene.span.clone(), e))?;
                 ends(&whole, &built).map_err(|e| at(roulette.span.clone(), e))?;
                 let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
@@ -69,6 +71,7 @@ fn grid_cells(
                     scene: scene.choice.value.clone(),
                     scene_label: scene.choice.label.clone(),
                     estimator: whole,
+                    fault,
                     estimator_label: estimator.choice.label.clone(),
                     roulette_label: roulette.choice.label.clone(),
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
@@ -77,7 +80,7 @@ fn grid_cells(
                     pixels: pixels(&built),
                     rays: rays(&scene.choice.value, &built, &whole),
                     finds_all: making::finds_all(&whole, &built),
-                    address: address(spec, &scene.choice.value, &whole),
+                    address: address(spec, &scene.choice.value, &whole, fault),
                     streams: Vec::new(),
                     may_stop: false,
                 });
@@ -185,10 +188,11 @@ fn ray_bound(estimator: &Estimator, scene: &Scene) -> f64 {
 }
 
 /// A stream's address is its content: adding a cell changes no other cell.
-fn address(spec: &Spec, scene: &SceneKind, estimator: &Estimator) -> Address {
-    let estimator = match spec.streams {
-        Streams::Independent => json(estimator),
-        Streams::Paired => "paired".to_owned(),
+fn address(spec: &Spec, scene: &SceneKind, estimator: &Estimator, fault: Option<&'static Fault>) -> Address {
+    let estimator = match (spec.streams, fault) {
+        (Streams::Independent, None) => json(estimator),
+        (Streams::Independent, Some(fault)) => json(estimator) + fault.name,
+        (Streams::Paired, _) => "paired".to_owned(),
     };
     Address::of(&[&spec.seed.to_string(), &json(scene), &estimator, "path"])
 }

@@ -113,7 +113,8 @@ pub fn extend(
             return Ok(Ended::Stopped);
         }
         let last = ((first / wave + 1) * wave).min(most);
-        let run = |b: u64| block_of(&built, &estimator, &address, &[], b * block..(b + 1) * block);
+        let draw = |number, pixel| address.stream(number, pixel);
+        let run = |b: u64| block_of(&built, &estimator, &draw, &[], b * block..(b + 1) * block);
         let blocks: Vec<Block> = (first..last).into_par_iter().map(run).collect();
         add(own, blocks)?;
         progress(own);

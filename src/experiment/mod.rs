@@ -8,6 +8,7 @@ mod grid;
 pub mod input;
 pub mod ledger;
 pub mod making;
+pub mod mistake;
 pub mod pixels;
 pub mod plan;
 pub mod references;
@@ -17,6 +18,7 @@ pub mod run;
 pub mod spec;
 mod stakes;
 pub mod store;
+pub mod study;
 mod subject;
 pub mod verdict;
 

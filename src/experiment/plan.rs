@@ -7,7 +7,9 @@ use super::references::{self, NamedReference};
 use super::run::LOOKS_IN_ALL;
 use super::spec::{self, Claim, Limits, Plot, Spec};
 use super::stakes;
+use super::study;
 use crate::estimator::{Estimate, Estimator, MAX_RAYS, Property};
+use crate::faults::{Fault, Faulty};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
 use crate::truth::{ClosedForm, Counted, Truth};
@@ -24,6 +26,8 @@ pub struct CellPlan {
     pub scene_label: String,
     /// The estimator with its termination rule.
     pub estimator: Estimator,
+    /// The mistake that is made in place of the estimator, if any.
+    pub fault: Option<&'static Fault>,
     /// What the estimator is called.
     pub estimator_label: String,
     /// What the termination rule is called.
@@ -52,6 +56,11 @@ impl CellPlan {
     /// Whether its mean is meant to be the right value.
     pub fn is_unbiased(&self) -> bool {
         self.estimator.property() == Property::Unbiased && self.finds_all
+    }
+
+    /// The estimator with its mistake, if it makes one.
+    pub fn faulty(&self) -> Option<Faulty> {
+        self.fault.map(|fault| Faulty { fault, estimator: self.estimator })
     }
 
     /// Expected rays of the whole cell.
@@ -230,7 +239,8 @@ impl Plan {
                 cell.samples = (cell.samples / 100).max(2);
             }
             // many blocks, or the t quantile is large; two passes at least, whose difference shows a pixel's variance
-            cell.block = (cell.samples / MIN_BLOCKS).min(BLOCK_PATHS / cell.pixels).max(2);
+            let blocks = if self.spec.seeds.is_some() { study::BLOCKS } else { MIN_BLOCKS };
+            cell.block = (cell.samples / blocks).min(BLOCK_PATHS / cell.pixels).max(2);
             // whole blocks only, and two of them at least, or there is no standard error
             cell.samples = cell.samples.div_ceil(cell.block).max(2) * cell.block;
         }

@@ -29,6 +29,8 @@ pub enum Estimand {
     Agree,
     /// What one bounce adds, compared with another cell.
     AgreeBounce(usize),
+    /// Mean, all bounces, against the wrong value that theory says a mistake has.
+    Wrong,
     /// How many rays each realization takes, against the law of roulette; stated is their mean.
     Length,
     /// Number of blocks that repeat an earlier one.
@@ -50,6 +52,7 @@ impl fmt::Display for Estimand {
             Estimand::Zeros => "zeros",
             Estimand::Agree => "agree",
             Estimand::AgreeBounce(_) => "agree_bounce",
+            Estimand::Wrong => "wrong_mean",
             Estimand::Length => "length",
             Estimand::Repeats => "repeats",
             Estimand::Serial => "serial",

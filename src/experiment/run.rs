@@ -43,7 +43,14 @@ pub fn run_cell(
         let last = (first + wave).min(look);
         let run = |block: u64| {
             let realizations = block * plan.block..(block + 1) * plan.block;
-            block_of(&scene, &plan.estimator, &plan.address, &plan.streams, realizations)
+            let draw = |number, pixel| plan.address.stream(number, pixel);
+            match plan.faulty() {
+                None => block_of(&scene, &plan.estimator, &draw, &plan.streams, realizations),
+                Some(faulty) => {
+                    let draw = |number, pixel| draw(faulty.realization(number), pixel);
+                    block_of(&scene, &faulty, &draw, &plan.streams, realizations)
+                }
+            }
         };
         let finished: Vec<Block> = (first..last).into_par_iter().map(run).collect();
         finished.iter().for_each(|block| cell.merge(block));
@@ -60,9 +67,10 @@ pub fn run_cell(
 
 /// Samples an estimator of one's own: `samples` realizations in blocks of `block`, on the current thread pool.
 pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, samples: u64, block: u64) -> Cell {
+    let draw = |number, pixel| address.stream(number, pixel);
     let blocks: Vec<Block> = (0..samples / block)
         .into_par_iter()
-        .map(|b| block_of(scene, estimator, address, &[], b * block..(b + 1) * block))
+        .map(|b| block_of(scene, estimator, &draw, &[], b * block..(b + 1) * block))
         .collect();
     let mut cell = Cell::default();
     blocks.iter().for_each(|block| cell.merge(block));
@@ -70,11 +78,12 @@ pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, sampl
     cell
 }
 
-/// One block of realizations, which bets on the given streams.
+/// One block of realizations, which bets on the given streams of samples. `draw` gives the random numbers of a realization's
+/// pixel.
 pub fn block_of(
     scene: &Scene,
     estimator: &impl Estimate,
-    address: &Address,
+    draw: &impl Fn(u64, u64) -> crate::sampling::Stream,
     streams: &[Stream],
     realizations: Range<u64>,
 ) -> Block {
@@ -86,7 +95,7 @@ pub fn block_of(
         for y in 0..height {
             for x in 0..width {
                 let pixel = u64::from(y) * u64::from(width) + u64::from(x);
-                let mut stream = address.stream(realization, pixel);
+                let mut stream = draw(realization, pixel);
                 let start = scene.start((x, y), &mut stream);
                 estimator.estimate(start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
                 block.pixel(pixel as usize, tally.value);

@@ -41,6 +41,7 @@ impl Subject<'_> {
     pub fn means(&self, sheet: &mut Sheet<'_>) {
         for channel in 0..3 {
             self.total(channel, sheet);
+            self.wrong(channel, sheet);
             for bin in 0..BINS {
                 self.bounce(channel, bin, sheet);
             }

@@ -27,6 +27,12 @@ impl Address {
         Address { key: [word(0), word(8)] }
     }
 
+    /// The address of the `n`-th repetition of what lives here.
+    pub fn repetition(&self, n: u64) -> Self {
+        let [a, b] = self.key.map(|word| word.to_string());
+        Address::of(&[&a, &b, "repetition", &n.to_string()])
+    }
+
     /// The stream of one pixel in one realization (`pixel` = 0 for a probe).
     ///
     /// (realization, pixel) -> state is injective up to the lowest bit, which the generator ignores.

@@ -6,9 +6,8 @@ use crate::progress::Progress;
 use crate::{HELD, INTERRUPTED, NOT_HELD};
 use furnace::experiment::plan::RAYS_PER_SECOND;
 use furnace::experiment::store::{self, Store, Stored};
-use furnace::experiment::{Cell, Error, Plan, Row, run_cell, verdict};
+use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
 use furnace::report::{self, Lookup, answer, table, terminal};
-use furnace::stats::Verdict;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -64,7 +63,7 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
         );
         return Ok(INTERRUPTED);
     }
-    Ok(status(&rows))
+    Ok(status(plan, &rows))
 }
 
 /// The finished cells, and the seconds of each.
@@ -91,9 +90,8 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Vec<Opti
     Ok((cells, seconds))
 }
 
-fn status(rows: &[Row]) -> u8 {
-    let held = rows.iter().all(|row| row.verdict.is_none_or(|v| v == Verdict::Pass));
-    if held { HELD } else { NOT_HELD }
+fn status(plan: &Plan, rows: &[Row]) -> u8 {
+    if mistake::all_held(plan, rows) { HELD } else { NOT_HELD }
 }
 
 fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
@@ -154,7 +152,7 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         store.write_cells(&stored)?;
         let folder = store.publish(None)?;
         print(&plan, &rows, &folder, options);
-        worst = worst.max(status(&rows));
+        worst = worst.max(status(&plan, &rows));
     }
     Ok(worst)
 }

@@ -7,6 +7,7 @@ pub use scene::scenes;
 use super::input::Sweep;
 use super::spec::{EstimatorSpec, RouletteSpec, TechniqueSpec};
 use crate::estimator::{Estimator, Explicit, Heuristic, Implicit, Recursive, Roulette, Rule, Technique};
+use crate::faults::{self, Fault};
 use crate::scene::{Directions, LightSampling, Pick, Points};
 
 /// One value of a choice.
@@ -54,6 +55,9 @@ pub enum Untermined {
     Explicit(Technique, LightSampling, Directions),
 }
 
+/// An estimator, and the mistake that it makes, if any.
+pub type Tested = (Untermined, Option<&'static Fault>);
+
 impl Untermined {
     /// The estimator with this rule; a recursion's depth and the rule's clamp both hold.
     pub fn with(self, roulette: Roulette) -> Estimator {
@@ -74,8 +78,34 @@ impl Untermined {
     }
 }
 
-/// The estimators that `spec` means.
-pub fn estimators(spec: &EstimatorSpec) -> Vec<Choice<Untermined>> {
+/// The estimators that `spec` means; those with a mistake only where the file asks for them.
+pub fn estimators(spec: &EstimatorSpec, faults: bool) -> Result<Vec<Choice<Tested>>, String> {
+    let EstimatorSpec::Fault { name, of } = spec else {
+        let tested =
+            |c: Choice<Untermined>| Choice { label: c.label, params: c.params, value: (c.value, None) };
+        return Ok(sound(spec).into_iter().map(tested).collect());
+    };
+    if !faults {
+        return Err(
+            "estimators with a mistake are for files that say `faults = true` at their top".to_owned()
+        );
+    }
+    if matches!(of.0, EstimatorSpec::Fault { .. }) {
+        return Err("a fault of a fault; `of` names a sound estimator, such as \"explicit\"".to_owned());
+    }
+    let mut all = Vec::new();
+    for name in name.as_slice() {
+        let fault = faults::find(name).ok_or_else(|| faults::unknown(name))?;
+        let faulty = |c: Choice<Untermined>| {
+            let label = format!("{} ({})", fault.name, c.label);
+            Choice { label, params: c.params, value: (c.value, Some(fault)) }
+        };
+        all.extend(sound(&of.0).into_iter().map(faulty));
+    }
+    Ok(all)
+}
+
+fn sound(spec: &EstimatorSpec) -> Vec<Choice<Untermined>> {
     let uniform = |directions: &Directions| match directions {
         Directions::Cosine => Vec::new(),
         Directions::Uniform => vec!["uniform directions".to_owned()],
@@ -116,6 +146,7 @@ pub fn estimators(spec: &EstimatorSpec) -> Vec<Choice<Untermined>> {
                 Untermined::Explicit(technique, lights, *directions),
             )]
         }
+        EstimatorSpec::Fault { .. } => Vec::new(),
     }
 }
 

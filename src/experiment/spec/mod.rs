@@ -8,7 +8,7 @@ mod walk;
 pub use claim::{Claim, Limits, Plot, Quantity};
 pub use primitives::{BsdfSpec, PointSpec, PrimitiveSpec, PrimitivesSpec, SensorSpec, ShapeSpec, SkySpec};
 pub use scene::{FlushSpec, FurnaceSpec, LooksAt, SceneSpec, SphereSpec};
-pub use walk::{EstimatorSpec, RouletteSpec, TechniqueSpec};
+pub use walk::{EstimatorSpec, FaultNames, RouletteSpec, TechniqueSpec};
 
 use super::error::Error;
 use super::input::{self, Named, Tables};
@@ -28,6 +28,13 @@ pub struct Spec {
     /// All chance follows from it.
     #[serde(default = "one")]
     pub seed: u64,
+    /// Whether estimators with a known mistake may be named.
+    #[serde(default)]
+    pub faults: bool,
+    /// So many times each cell is run and judged on its own, with a seed each: not what is right is asked then, but how
+    /// often the instruments say so.
+    #[serde(default, deserialize_with = "input::optional_count")]
+    pub seeds: Option<u32>,
     /// Whether cells share their random numbers.
     #[serde(default)]
     pub streams: Streams,

@@ -1,7 +1,7 @@
 //! Estimators and termination rules as files write them.
 
 use crate::estimator::Heuristic;
-use crate::experiment::input::{self, Sweep};
+use crate::experiment::input::{self, Named, Sweep};
 use crate::scene::{Directions, Pick, Points};
 use serde::Deserialize;
 
@@ -45,6 +45,38 @@ pub enum EstimatorSpec {
         #[serde(default)]
         directions: Directions,
     },
+    /// An estimator with a known mistake; see [`crate::faults`].
+    Fault {
+        /// Which mistake.
+        name: FaultNames,
+        /// What it claims to be.
+        #[serde(default = "implicit")]
+        of: Box<Named<EstimatorSpec>>,
+    },
+}
+
+fn implicit() -> Box<Named<EstimatorSpec>> {
+    Box::new(Named(EstimatorSpec::Implicit { directions: Directions::Cosine }))
+}
+
+/// Names of faults: one, or a list.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged, expecting = "the name of a fault, or a list of names")]
+pub enum FaultNames {
+    /// One.
+    One(String),
+    /// Several.
+    Several(Vec<String>),
+}
+
+impl FaultNames {
+    /// All of them.
+    pub fn as_slice(&self) -> &[String] {
+        match self {
+            FaultNames::One(name) => std::slice::from_ref(name),
+            FaultNames::Several(names) => names,
+        }
+    }
 }
 
 /// Which technique finds direct light.

@@ -1,0 +1,56 @@
+//! Cells that run an estimator with a known mistake: the mistake is to be found, and to be as large as theory says.
+
+use super::plan::Plan;
+use super::row::{Estimand, Row};
+use super::spec::Claim;
+use super::subject::Subject;
+use super::verdict::Sheet;
+use crate::faults::Effect;
+use crate::stats::tails::Light;
+use crate::stats::{Question, Verdict};
+use crate::truth::{Source, Value};
+
+impl Subject<'_> {
+    /// A mistake whose wrong value theory knows is to have just that.
+    pub fn wrong(&self, channel: usize, sheet: &mut Sheet<'_>) {
+        let wrong = self.plan.faulty().and_then(|faulty| faulty.wrong(&self.plan.scene, channel));
+        let Some(wrong) = wrong.filter(|wrong| wrong.is_finite()) else { return };
+        let total = &self.cell.total[channel];
+        let mut row = self.row(Estimand::Wrong, Some(channel), total.mean);
+        row.std_error = total.std_error();
+        row.against(&Value::exact(wrong, Source::ClosedForm), Some(wrong));
+        sheet.state(row);
+        if let Some((claim, margin)) = sheet.claim(Claim::unbiased) {
+            let question = Question::about(total, self.cell.invalid(), wrong, margin * wrong.abs());
+            let noise_free = total.m2 == 0.0;
+            let skewness = total.skewness().unwrap_or(0.0) / (total.n as f64).sqrt();
+            let unfit = self.cell.tails[channel].guard();
+            let unfit = (unfit.0 == Light::Red).then_some(unfit.1);
+            let foreseen = unfit.clone().or_else(|| (wrong == 0.0).then(|| "nothing at all".to_owned()));
+            sheet.ask_in_vain(claim, Question { noise_free, skewness, unfit, ..question }, foreseen);
+        }
+    }
+}
+
+/// Whether the rows of a cell say that something is wrong with it.
+pub fn is_caught(rows: &[&Row]) -> bool {
+    let against_truth = rows.iter().filter(|row| row.estimand != Estimand::Wrong);
+    against_truth.filter_map(|row| row.verdict).any(|v| matches!(v, Verdict::Fail | Verdict::Invalid))
+}
+
+/// Whether all that is claimed was shown: sound cells are right, those with a mistake are caught, or found to be right
+/// where their mistake has no effect.
+pub fn all_held(plan: &Plan, rows: &[Row]) -> bool {
+    let passed = |row: &&Row| row.verdict.is_none_or(|v| v == Verdict::Pass);
+    plan.cells.iter().enumerate().all(|(index, cell)| {
+        let own: Vec<&Row> = rows.iter().filter(|row| row.cell == index).collect();
+        match cell.fault {
+            _ if own.is_empty() => true,
+            Some(fault) if fault.effect != Effect::Equivalent => {
+                let as_theory_says = own.iter().filter(|row| row.estimand == Estimand::Wrong).all(passed);
+                is_caught(&own) && as_theory_says
+            }
+            _ => own.iter().all(passed),
+        }
+    })
+}
