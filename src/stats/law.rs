@@ -26,18 +26,18 @@ pub struct Fit {
 /// 1e-9 at least: below 1e-12 it counts as impossible. Cells should be ordered (by
 /// path length, say), since neighbours are pooled until each expects
 /// [`MIN_EXPECTED`]. None if a probability is negative or NaN, their sum exceeds
-/// 1, or fewer than two pooled cells remain.
+/// 1, or fewer than two pooled cells remain (and nothing impossible was counted).
 ///
 /// The p-value is an approximation, a little too small: with 1000 lengths of a
 /// geometric law, p < 1e-2, 1e-3, 1e-4 in 1.03e-2, 1.2e-3, 1.6e-4 of 200 000 simulations.
 pub fn goodness(counts: &[u64], probabilities: &[f64]) -> Option<Fit> {
     let cells = cells(counts, probabilities)?;
     let n: u64 = cells.iter().map(|cell| cell.0).sum();
-    let (mut statistic, mut pooled) = (0.0, Vec::<(u64, f64)>::new());
+    if impossible(&cells) {
+        return Some(Fit { statistic: f64::INFINITY, df: cells.len() - 1, p: 0.0 });
+    }
+    let mut pooled = Vec::<(u64, f64)>::new();
     for (count, probability) in cells {
-        if probability == 0.0 && count > 0 {
-            statistic = f64::INFINITY;
-        }
         let expected = n as f64 * probability;
         match pooled.last_mut().filter(|last| last.1 < MIN_EXPECTED) {
             Some(last) => *last = (last.0 + count, last.1 + expected),
@@ -55,7 +55,7 @@ pub fn goodness(counts: &[u64], probabilities: &[f64]) -> Option<Fit> {
     }
     let term =
         |&(count, expected): &(u64, f64)| (count as f64 - expected) * (count as f64 - expected) / expected;
-    statistic += pooled.iter().map(term).sum::<f64>();
+    let statistic = pooled.iter().map(term).sum();
     let df = pooled.len() - 1;
     let p = ChiSquared::new(df as f64).ok()?.sf(statistic);
     Some(Fit { statistic, df, p })
@@ -74,7 +74,7 @@ pub fn log_e_value(counts: &[u64], probabilities: &[f64]) -> f64 {
     let Some(cells) = cells(counts, probabilities) else {
         return f64::NAN;
     };
-    if cells.iter().any(|&(count, probability)| probability == 0.0 && count > 0) {
+    if impossible(&cells) {
         return f64::INFINITY;
     }
     let factors: [f64; 9] = std::array::from_fn(|j| log_bayes_factor(&cells, libm::exp10(j as f64)));
@@ -91,6 +91,10 @@ fn log_bayes_factor(cells: &[(u64, f64)], concentration: f64) -> f64 {
     let seen = cells.iter().filter(|cell| cell.0 > 0);
     let sum: f64 = seen.map(|&(count, p)| rise(concentration * p, count) - count as f64 * libm::log(p)).sum();
     sum - rise(concentration, n)
+}
+
+fn impossible(cells: &[(u64, f64)]) -> bool {
+    cells.iter().any(|&(count, probability)| probability == 0.0 && count > 0)
 }
 
 /// Counts with their probabilities, the rest last; none if these are no law.
@@ -163,6 +167,7 @@ mod tests {
             assert_eq!(log_e_value(&counts, &[0.2, 0.8]), f64::INFINITY);
         }
         assert_eq!(goodness(&[100, 100, 1], &[0.5, 0.5, 0.0]).unwrap().p, 0.0);
+        assert_eq!(goodness(&[1, 1], &[1.0]).unwrap().p, 0.0);
         assert_eq!(goodness(&[10, 5], &[0.6, 0.4]), None);
         assert_eq!(goodness(&[], &[]), None);
         for bad in [[0.6, 0.5], [-0.1, 0.5], [f64::NAN, 0.5]] {

@@ -1,8 +1,12 @@
 //! The decision rules of other tools, from their formulas, to be compared with ours.
 //!
-//! Written from a description of the sources at the commits named below, without
-//! their code. Single precision is replaced by double: the rules are meant to be seen
-//! at their best. "Fires" means that the tool reports a defect.
+//! Own code after the formulas in the files named below, at or near the commits named.
+//! Single precision is replaced by double: the rules are meant to be seen at their
+//! best. "Fires" means that the tool reports a defect.
+//!
+//! Of simulated images without a defect (64² pixels, 488 samples, coefficient of variation 1)
+//! Mitsuba's rule fires in 0 of 3000; a uniform bias of 8.7 % it finds half of the time.
+//! Eradiate's t tests at 5 % reject the truth in 95 % (independent) and 99.8 to 99.9 % (paired).
 
 use super::{Moments, multiplicity, student};
 

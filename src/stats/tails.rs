@@ -166,7 +166,7 @@ impl Tail {
     /// It can not be perfect: no function of a sample separates q = 0.25 from
     /// 0.26. Between, yellow is the honest answer; the normal approximation is
     /// poor there, too. Heavy but finite tails look heavier the fewer the values:
-    /// lognormal with sigma = 1 is yellow at n = 10^3, green in 85 % at 10^4 and
+    /// lognormal with sigma = 1 is mostly yellow at n = 10^3, green in 85 % at 10^4 and
     /// always at 10^5. A rare event is red below about 100 hits in 10^6.
     pub fn guard(&self) -> (Light, String) {
         let effective = self.effective();
