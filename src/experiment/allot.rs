@@ -83,7 +83,9 @@ mod tests {
 
     #[test]
     fn samples_can_be_asked_for_again() {
-        for (pixels, blocks) in [(1, MIN_BLOCKS), (1, study::BLOCKS), (256, MIN_BLOCKS), (1 << 14, MIN_BLOCKS)] {
+        for (pixels, blocks) in
+            [(1, MIN_BLOCKS), (1, study::BLOCKS), (256, MIN_BLOCKS), (1 << 14, MIN_BLOCKS)]
+        {
             for asked in (1..3000).chain([100_000, 1_048_576, 1_048_577, 67_108_863]) {
                 let (samples, block) = whole_blocks(asked, pixels, blocks);
                 let least = (samples + 1).saturating_sub(block).max(1);

@@ -81,7 +81,7 @@ pub struct Plan {
     /// Stored images that the file names.
     pub references: Vec<NamedReference>,
     /// How many questions each claim asks at most in the whole experiment, if only one of its cells is run.
-    whole: Option<Vec<usize>>,
+    pub(super) whole: Option<Vec<usize>>,
 }
 
 /// What the command line changes.
@@ -168,7 +168,10 @@ impl Plan {
         let labels: Vec<String> = self.cells.iter().map(|cell| self.label(cell)).collect();
         if !labels.iter().any(|label| label == wanted) {
             let there = labels.iter().map(|label| format!("\n  {label}")).collect::<String>();
-            return Err(Error::Refused(format!("no cell of {} is called `{wanted}`; there are:{there}", self.name)));
+            return Err(Error::Refused(format!(
+                "no cell of {} is called `{wanted}`; there are:{there}",
+                self.name
+            )));
         }
         // studies judge each cell as if it were the whole experiment
         if self.spec.seeds.is_none() {

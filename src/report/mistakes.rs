@@ -53,7 +53,10 @@ impl Tried<'_> {
     pub fn outcome(&self) -> String {
         match self.caught {
             Some(row) => {
-                let index = row.estimand.index().map_or_else(String::new, |i| format!(" {}", table::index(row.estimand, i)));
+                let index = row
+                    .estimand
+                    .index()
+                    .map_or_else(String::new, |i| format!(" {}", table::index(row.estimand, i)));
                 let channel = row.channel.map_or_else(String::new, |c| format!(" {}", CHANNELS[c]));
                 let n = row.needed.unwrap_or(row.samples);
                 let unexpected = if self.is_harmless { ", although nothing should change" } else { "" };
@@ -87,21 +90,33 @@ pub fn sentences(lookup: &Lookup<'_>) -> Vec<String> {
     let mut told = Vec::new();
     if !known.is_empty() {
         let cells = harmful.iter().filter(|tried| tried.caught.is_some()).count();
-        let cells = if harmful.len() == known.len() { String::new() } else { format!(", in {cells} of {} cells", harmful.len()) };
+        let cells = if harmful.len() == known.len() {
+            String::new()
+        } else {
+            format!(", in {cells} of {} cells", harmful.len())
+        };
         let missed: Vec<String> = known.iter().filter(|name| !caught.contains(name)).cloned().collect();
-        let missed =
-            if missed.is_empty() { String::new() } else { format!("; not caught: {}", number::list(&missed, "and")) };
+        let missed = if missed.is_empty() {
+            String::new()
+        } else {
+            format!("; not caught: {}", number::list(&missed, "and"))
+        };
         told.push(format!("{} of {} mistakes were caught{cells}{missed}.", caught.len(), known.len()));
     }
     let judged = || all.iter().flat_map(|tried| &tried.values).filter_map(|row| row.verdict);
     let count = judged().filter(|&verdict| verdict == Verdict::Pass).count();
     if judged().count() > 0 {
         let judged = judged().count();
-        told.push(format!("The wrong values that theory gives for mistakes were shown in {count} of {judged} channels."));
+        told.push(format!(
+            "The wrong values that theory gives for mistakes were shown in {count} of {judged} channels."
+        ));
     }
     if !harmless.is_empty() {
         let quiet = harmless.iter().filter(|tried| tried.caught.is_none()).count();
-        told.push(format!("{quiet} of {} cells whose mistake changes nothing raised no alarm.", harmless.len()));
+        told.push(format!(
+            "{quiet} of {} cells whose mistake changes nothing raised no alarm.",
+            harmless.len()
+        ));
     }
     told
 }

@@ -63,7 +63,8 @@ pub fn sentence(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     let state = |kind: Kind| {
-        let of_kind = alike.iter().copied().filter(|&c| made_of(&cells[c].estimator).is_some_and(|m| m.0 == kind));
+        let of_kind =
+            alike.iter().copied().filter(|&c| made_of(&cells[c].estimator).is_some_and(|m| m.0 == kind));
         State::of(lookup, &of_kind.collect::<Vec<_>>())
     };
     let culprit = culprit(state(Kind::Light), state(Kind::Direction), state(Kind::Both));

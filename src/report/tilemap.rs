@@ -65,7 +65,8 @@ impl TileMap {
     /// What the map shows, in words.
     pub fn words(&self) -> String {
         let of_channel = |channel: usize| {
-            let marked = || self.tiles.iter().enumerate().map(move |(i, t)| (i, t[channel])).filter(|t| t.1.is_wrong);
+            let marked =
+                || self.tiles.iter().enumerate().map(move |(i, t)| (i, t[channel])).filter(|t| t.1.is_wrong);
             let strongest = marked().max_by(|a, b| a.1.z.abs().total_cmp(&b.1.z.abs()));
             let Some((at, tile)) = strongest else { return format!("{}: none", CHANNELS[channel]) };
             let bright = marked().filter(|t| t.1.z > 0.0).count();
@@ -78,7 +79,10 @@ impl TileMap {
             let (row, column) = (at / TILES as usize + 1, at % TILES as usize + 1);
             let z = number::signed(tile.z);
             let (channel, counts) = (CHANNELS[channel], number::list(&counts, "and"));
-            format!("{channel}: {counts} of {}, most in row {row}, column {column} (z = {z})", self.tiles.len())
+            format!(
+                "{channel}: {counts} of {}, most in row {row}, column {column} (z = {z})",
+                self.tiles.len()
+            )
         };
         format!("Wrong tiles. {}.", [0, 1, 2].map(of_channel).join("; "))
     }

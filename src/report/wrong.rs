@@ -74,7 +74,10 @@ fn bounce(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
         }
         let whole = failing(&rows(lookup, cell, *mean));
         (!whole.is_empty()).then(|| {
-            format!("No single bounce is shown to be wrong{against}, but the whole is: {}.", deviations(&whole))
+            format!(
+                "No single bounce is shown to be wrong{against}, but the whole is: {}.",
+                deviations(&whole)
+            )
         })
     };
     kinds.iter().find_map(of_kind)
@@ -172,7 +175,9 @@ fn spread(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
         match row.estimand {
             Estimand::Variance => Some(format!("the variance{channel} is {}", off())),
             Estimand::Cost => Some(format!("the number of rays is {}", off())),
-            Estimand::Length => Some("paths do not end with the probabilities that the rule promises".to_owned()),
+            Estimand::Length => {
+                Some("paths do not end with the probabilities that the rule promises".to_owned())
+            }
             Estimand::Repeats => Some(format!("{} blocks repeat an earlier one, bit for bit", row.mean)),
             Estimand::Serial => {
                 let r = number::signed(row.mean);

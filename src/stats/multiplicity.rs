@@ -162,7 +162,8 @@ mod tests {
         let rate = |scale: f64| {
             let (mut source, mut wrong, mut found) = (Source(7), 0.0, 0);
             for _ in 0..RUNS {
-                let p = (0..50).map(|i| scale * if i < 10 { 1e-3 * source.uniform() } else { source.uniform() });
+                let p =
+                    (0..50).map(|i| scale * if i < 10 { 1e-3 * source.uniform() } else { source.uniform() });
                 let rejected = bh(&p.collect::<Vec<f64>>(), 0.1);
                 let [right, false_ones] =
                     [&rejected[..10], &rejected[10..]].map(|part| part.iter().filter(|&&r| r).count());
