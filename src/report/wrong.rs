@@ -54,7 +54,10 @@ fn place(lookup: &Lookup<'_>, cell: usize) -> Place {
 /// Why there is no number to judge.
 fn invalid(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
     let row = lookup.cell(cell).iter().find(|row| row.verdict == Some(Verdict::Invalid))?;
-    Some(format!("There is no number to judge: {}.", row.note))
+    let channel = row.channel.map_or_else(String::new, |c| format!(" {}", CHANNELS[c]));
+    let index =
+        row.estimand.index().map_or_else(String::new, |i| format!(" {}", table::index(row.estimand, i)));
+    Some(format!("Invalid ({}{index}{channel}, to begin with): {}.", row.estimand, row.note))
 }
 
 /// The first bounce that fails, or that none does although the whole fails.
@@ -73,12 +76,9 @@ fn bounce(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
             return Some(format!("First wrong bounce{against}: {name}, {}. {before}", deviations(&failing)));
         }
         let whole = failing(&rows(lookup, cell, *mean));
-        (!whole.is_empty()).then(|| {
-            format!(
-                "No single bounce is shown to be wrong{against}, but the whole is: {}.",
-                deviations(&whole)
-            )
-        })
+        let any = (0..BINS).any(|bin| judged(bin).iter().any(|row| row.verdict.is_some()));
+        let none = if any { "No single bounce is shown to be wrong" } else { "No single bounce was judged" };
+        (!whole.is_empty()).then(|| format!("{none}{against}; the whole is {}.", deviations(&whole)))
     };
     kinds.iter().find_map(of_kind)
 }
@@ -96,18 +96,33 @@ fn before(first: usize, verdict: impl Fn(usize) -> Option<Verdict>) -> String {
     if first == 0 {
         return "There is none before it.".to_owned();
     }
-    let list = |of: Option<Verdict>| {
-        let bins: Vec<String> = (0..first).filter(|&bin| verdict(bin) == of).map(|b| b.to_string()).collect();
-        number::list(&bins, "and")
-    };
+    let list = |of: Option<Verdict>| runs(&(0..first).filter(|&bin| verdict(bin) == of).collect::<Vec<_>>());
     let parts = [
         (list(Some(Verdict::Pass)), "shown to be right"),
         (list(Some(Verdict::Inconclusive)), "undecided"),
+        (list(Some(Verdict::Invalid)), "invalid"),
         (list(None), "not judged"),
     ];
     let parts: Vec<String> =
         parts.iter().filter(|part| !part.0.is_empty()).map(|(bins, what)| format!("{bins} {what}")).collect();
     format!("Before it: {}.", parts.join("; "))
+}
+
+/// "0 to 3 and 5".
+fn runs(bins: &[usize]) -> String {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for &bin in bins {
+        match runs.last_mut() {
+            Some(run) if run.1 + 1 == bin => run.1 = bin,
+            _ => runs.push((bin, bin)),
+        }
+    }
+    let told = |&(from, to): &(usize, usize)| match to - from {
+        0 => from.to_string(),
+        1 => format!("{from}, {to}"),
+        _ => format!("{from} to {to}"),
+    };
+    number::list(&runs.iter().map(told).collect::<Vec<_>>(), "and")
 }
 
 /// "in R and G too bright; G by 0.0123, between 0.0110 and 0.0136".
@@ -156,6 +171,7 @@ fn channels(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
         of(Some(Verdict::Fail), "wrong"),
         of(Some(Verdict::Pass), "right"),
         of(Some(Verdict::Inconclusive), "undecided"),
+        of(Some(Verdict::Invalid), "invalid"),
         of(None, "not judged"),
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();

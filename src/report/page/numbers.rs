@@ -42,7 +42,7 @@ fn number_row(row: &Row) -> Markup {
             td { @if precise { (badge(row.verdict)) } }
             td { @if let Some(engine) = row.engine { (engine) } }
             td.n { @if let Some(needed) = row.needed { (needed) } }
-            td { (row.source) " " (row.note) }
+            td.said { (row.source) " " (row.note) }
         }
     }
 }

@@ -61,7 +61,7 @@ fn budget_row(share: &Share) -> Markup {
 }
 
 fn invalid(share: &Share) -> Markup {
-    html! { @if share.invalid > 0 { ", and " (share.invalid) " about numbers that are none" } }
+    html! { @if share.invalid > 0 { " (and " (share.invalid) " invalid)" } }
 }
 
 /// A line a cell.
@@ -70,14 +70,13 @@ pub fn verdicts(lines: &[Line]) -> Markup {
         div.wide { table {
             thead { tr {
                 th { "scene" } th { "estimator" } th { "rule" } th { "verdict" } th.n { "bias [%] R G B" }
-                th.n { "mde [%]" } th { "truth" } th.n { "rays" } th.n { "efficiency" } th.n { "samples" } th.n { "needed" }
+                th.n { "mde [%]" } th { "truth" } th.n { "rays" } th.n { "efficiency" } th.n { "samples" }
             } }
             tbody { @for line in lines { tr {
                 td { (line.scene) } td { (line.estimator) } td { (line.rule) }
                 td { (badge(line.verdict)) " " (by(&line.by)) @if !line.note.is_empty() { div.note { (line.note) } } }
                 td.n { (line.bias) } td.n { (line.mde) } td.truth { (line.truth) } td.n { (line.rays) }
-                td.n { (line.efficiency) } td.n { (line.samples) }
-                td.n { @if let Some(needed) = line.needed { (needed) } }
+                td.n { (line.efficiency) } td.n { (line.samples) @if let Some(needed) = line.needed { div.few { (needed) " needed" } } }
             } } }
         } }
     }
