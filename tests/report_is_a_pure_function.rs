@@ -131,6 +131,9 @@ fn the_csv_has_the_promised_columns_and_reads_back() {
                 "{name}: {text}"
             );
         }
+        let lights = if &row[column("estimand")] == "mean" { &["green", "yellow", "red"][..] } else { &[""] };
+        assert!(lights.contains(&&row[column("guard")]), "{row:?}");
+        assert_eq!(row[column("guard")].is_empty(), row[column("guard_note")].is_empty(), "{row:?}");
         // the very number that is stored
         if &row[column("estimand")] == "mean" && &row[column("channel")] == "R" {
             let mean = stored["cells"][cell]["total"][0]["mean"].as_f64().unwrap();

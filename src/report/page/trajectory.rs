@@ -29,11 +29,9 @@ struct Side {
 /// The figure, if the cell's mean was bet on.
 pub fn figure(lookup: &Lookup<'_>, index: usize, cell: &Cell) -> Markup {
     let sides = sides(lookup, index, cell);
-    let Some(needed) = needed(lookup, index, &sides).filter(|_| sides.iter().any(|s| s.points.len() > 1))
-    else {
-        return html! {};
-    };
-    let two = if sides.iter().any(|side| !side.is_above) { " / 2" } else { "" };
+    let needed = needed(lookup, index).filter(|_| sides.iter().any(|side| side.points.len() > 1));
+    let Some((needed, shared)) = needed else { return html! {} };
+    let two = if shared == 2.0 { " / 2" } else { "" };
     html! {
         figure.bets {
             (draw(&sides, needed))
@@ -44,7 +42,7 @@ pub fn figure(lookup: &Lookup<'_>, index: usize, cell: &Cell) -> Markup {
                     b style={ "color:" (hex(colour)) } { (channel) } " "
                 }
                 "· above the line the mean is refuted: e = 1 / (level of one question" (two) ") = "
-                (format!("{:.1e}", libm::pow(10.0, needed))) "."
+                (format!("{:.1e}", libm::pow(10.0, needed))) ". What has won far more runs along the top."
             }
         }
     }
@@ -67,13 +65,14 @@ fn sides(lookup: &Lookup<'_>, index: usize, cell: &Cell) -> Vec<Side> {
     sides
 }
 
-/// Decimal logarithm of the e-value that refutes the mean, under the claim that asks for it.
-fn needed(lookup: &Lookup<'_>, index: usize, sides: &[Side]) -> Option<f64> {
-    let claim = (0..3).find_map(|c| lookup.row(index, Estimand::Mean, Some(c))?.claim)?;
-    let level = budget::shares(lookup).get(claim)?.level();
-    // two sides share the level
-    let shared = if sides.iter().any(|side| !side.is_above) { 2.0 } else { 1.0 };
-    Some(libm::log10(shared / level))
+/// Decimal logarithm of the e-value that refutes the mean under the claim that asks for it, and how many sides share the
+/// level of that question.
+fn needed(lookup: &Lookup<'_>, index: usize) -> Option<(f64, f64)> {
+    let rows = || (0..3).filter_map(|c| lookup.row(index, Estimand::Mean, Some(c)));
+    let level = budget::shares(lookup).get(rows().find_map(|row| row.claim)?)?.level();
+    // a side without evidence takes no share, and leaves its end of the interval open
+    let shared = if rows().any(|row| row.ci.is_some()) { 2.0 } else { 1.0 };
+    Some((libm::log10(shared / level), shared))
 }
 
 /// Where a value lies.

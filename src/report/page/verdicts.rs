@@ -25,9 +25,11 @@ pub fn claims(lookup: &Lookup<'_>) -> Markup {
                 tbody { @for share in &shares { (budget_row(share)) } }
             } }
         }
+        details.words {
+            summary { "What the words mean" }
         p {
             "PASS: shown to lie within the margin. FAIL: shown to differ. INCONCLUSIVE: neither, with these samples. "
-            "INVALID: NaN, infinity, negative radiance or a runaway walk. No verdict: nothing is claimed, or the test's "
+            "INVALID: NaN, infinity, negative radiance, a sample beyond its bound, or a runaway walk. No verdict: nothing is claimed, or the test's "
             "conditions do not hold (the numbers below say why). exact: decided by bets, whose error probability holds for "
             "any number of samples; asymptotic: by a t test, whose error probability is approached as samples grow; "
             "comparison: theory and measurement are without noise. needed: samples after which all was decided, where "
@@ -36,6 +38,7 @@ pub fn claims(lookup: &Lookup<'_>) -> Markup {
             "of the mean that would have been found with a probability of 90 %, in the worst channel. truth: its source "
             "and its own error, standard error and bound added. One bias stands for three that read alike. efficiency: "
             "1 / (variance × rays) in (W m⁻² sr⁻¹)⁻², variances of the channels added, in an image those of its pixels."
+        }
         }
     }
 }
