@@ -14,6 +14,7 @@ pub mod mitsuba;
 mod number;
 mod page;
 pub mod plots;
+pub mod study;
 mod summary;
 pub mod table;
 pub mod terminal;

@@ -261,7 +261,7 @@ fn samples(lookup: &Lookup<'_>) -> String {
     if alike && !as_written { format!(" --samples {first}") } else { String::new() }
 }
 
-fn style() -> String {
+pub(super) fn style() -> String {
     let font = STANDARD.encode(figure::WOFF2);
     format!(
         "@font-face{{font-family:'Furnace Sans';src:url(data:font/woff2;base64,{font}) format('woff2')}}{}",

@@ -7,6 +7,7 @@ mod progress;
 mod reference;
 mod render;
 mod run;
+mod study;
 mod subject;
 
 use args::{Cli, Command, Format};

@@ -3,7 +3,7 @@
 use crate::args::{Format, Options};
 use crate::files::{self, Source};
 use crate::progress::Progress;
-use crate::{HELD, INTERRUPTED, NOT_HELD};
+use crate::{HELD, INTERRUPTED, NOT_HELD, study};
 use furnace::experiment::plan::RAYS_PER_SECOND;
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
@@ -34,6 +34,9 @@ pub fn pool(options: &Options) -> Result<rayon::ThreadPool, Error> {
 }
 
 fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    if plan.spec.seeds.is_some() {
+        return study::one(source, plan, options, stop);
+    }
     let folder = source.report_folder(options);
     let store = Store::open(&folder)?;
     let (cells, seconds) = sample(plan, options, stop)?;
@@ -117,7 +120,7 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
     println!("\nThe page: {}", page.display());
 }
 
-fn provenance(source: &Source, plan: &Plan) -> String {
+pub fn provenance(source: &Source, plan: &Plan) -> String {
     let git = std::process::Command::new("git").args(["rev-parse", "HEAD"]).output();
     let commit = git.ok().filter(|out| out.status.success());
     let commit = commit.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned());
@@ -140,6 +143,10 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         let source = Source::read(name, options)?;
         let mut plan = source.plan(options)?;
         let folder = source.report_folder(options);
+        if plan.spec.seeds.is_some() {
+            worst = worst.max(study::report(&plan, &folder, options)?);
+            continue;
+        }
         let stored = store::load(&folder, &mut plan)?;
         let rows = verdict::rows(&plan, &stored.cells);
         let store = Store::open(&folder)?;
