@@ -77,6 +77,7 @@ fn grid_cells(
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
                     samples: grid.samples.unwrap_or(spec.samples),
                     block: 0,
+                    runs: 1,
                     pixels: pixels(&built),
                     rays: rays(&scene.choice.value, &built, &whole),
                     finds_all: making::finds_all(&whole, &built),

@@ -8,7 +8,7 @@ use super::verdict::Sheet;
 use crate::faults::Effect;
 use crate::stats::tails::Light;
 use crate::stats::{Question, Verdict};
-use crate::truth::{Source, Value};
+use crate::truth::{Counted, Source, Value};
 
 impl Subject<'_> {
     /// A mistake whose wrong value theory knows is to have just that.
@@ -21,12 +21,14 @@ impl Subject<'_> {
         row.against(&Value::exact(wrong, Source::ClosedForm), Some(wrong));
         sheet.state(row);
         if let Some((claim, margin)) = sheet.claim(Claim::unbiased) {
-            let question = Question::about(total, self.cell.invalid(), wrong, margin * wrong.abs());
+            let right = self.truth.mean(channel, Counted::All).map_or(0.0, |right| right.value);
+            let scale = wrong.abs().max(right);
+            let question = Question::about(total, self.cell.invalid(), wrong, margin * scale);
             let noise_free = total.m2 == 0.0;
             let skewness = total.skewness().unwrap_or(0.0) / (total.n as f64).sqrt();
             let unfit = self.cell.tails[channel].guard();
             let unfit = (unfit.0 == Light::Red).then_some(unfit.1);
-            let foreseen = unfit.clone().or_else(|| (wrong == 0.0).then(|| "nothing at all".to_owned()));
+            let foreseen = unfit.clone();
             sheet.ask_in_vain(claim, Question { noise_free, skewness, unfit, ..question }, foreseen);
         }
     }

@@ -1,5 +1,6 @@
 //! The resolved experiment: every cell with its samples and what it will cost.
 
+use super::cell::Channels;
 use super::error::Error;
 use super::grid;
 use super::ledger::Stream;
@@ -12,7 +13,7 @@ use crate::estimator::{Estimate, Estimator, MAX_RAYS, Property};
 use crate::faults::{Fault, Faulty};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
-use crate::truth::{ClosedForm, Counted, Truth};
+use crate::truth::{ClosedForm, Counted, Known, Truth};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -38,6 +39,8 @@ pub struct CellPlan {
     pub samples: u64,
     /// Realizations a block.
     pub block: u64,
+    /// How many times it is run, with a seed each.
+    pub runs: u64,
     /// Pixels of one realization.
     pub pixels: u64,
     /// Expected rays a realization: by theory, or an upper bound.
@@ -65,7 +68,7 @@ impl CellPlan {
 
     /// Expected rays of the whole cell.
     pub fn total_rays(&self) -> f64 {
-        self.rays * self.samples as f64
+        self.rays * (self.samples * self.runs) as f64
     }
 }
 
@@ -230,7 +233,7 @@ impl Plan {
             match (overrides.samples, self.spec.max_samples, limits) {
                 (Some(samples), _, _) => cell.samples = samples,
                 (None, Some(most), Some((limits, level))) if most > cell.samples => {
-                    let wanted = wanted_samples(cell, limits.margin, *level);
+                    let wanted = wanted_samples(cell, limits.margin, *level, None);
                     cell.samples = wanted.map_or(cell.samples, |n| n.clamp(cell.samples, most));
                 }
                 _ => {}
@@ -239,6 +242,7 @@ impl Plan {
                 cell.samples = (cell.samples / 100).max(2);
             }
             // many blocks, or the t quantile is large; two passes at least, whose difference shows a pixel's variance
+            cell.runs = u64::from(self.spec.seeds.unwrap_or(1));
             let blocks = if self.spec.seeds.is_some() { study::BLOCKS } else { MIN_BLOCKS };
             cell.block = (cell.samples / blocks).min(BLOCK_PATHS / cell.pixels).max(2);
             // whole blocks only, and two of them at least, or there is no standard error
@@ -277,15 +281,23 @@ fn rule_label(cell: &CellPlan, swept: &[String]) -> String {
     format!("{}{params}", cell.roulette_label)
 }
 
-/// Realizations after which a cell is shown to be within the relative margin in each channel, by theory's variance, where
-/// each question has `level`; `None` where theory knows no variance.
-pub fn wanted_samples(cell: &CellPlan, margin: f64, level: f64) -> Option<u64> {
+/// Realizations after which a cell is shown to be within the relative margin in each channel, where each question has
+/// `level`: by theory's mean and variance, or where theory knows none by those that were `measured`.
+pub fn wanted_samples(cell: &CellPlan, margin: f64, level: f64, measured: Option<&Channels>) -> Option<u64> {
     const POWER: f64 = 0.999;
-    let closed = ClosedForm::of(&cell.scene, &cell.estimator)?;
-    let needed = |channel| {
-        let variance = closed.central(channel, Counted::All, 2).value()?;
-        let margin = margin * closed.truth(channel, Counted::All);
-        let samples = stakes::samples(cell, None, channel, variance);
+    let closed = ClosedForm::of(&cell.scene, &cell.estimator);
+    let of_sample = |c: usize| measured.and_then(|m| Some((m[c].mean, m[c].variance()?)));
+    let by_theory = |c: usize| {
+        let closed = closed.as_ref()?;
+        Some((closed.truth(c, Counted::All), closed.central(c, Counted::All, 2).value()?))
+    };
+    let infinite = |c: usize| {
+        closed.as_ref().is_some_and(|closed| closed.central(c, Counted::All, 2) == Known::Infinite)
+    };
+    let needed = |c: usize| {
+        let (mean, variance) = by_theory(c).or_else(|| of_sample(c).filter(|_| !infinite(c)))?;
+        let margin = margin * mean;
+        let samples = stakes::samples(cell, None, c, variance);
         // a t test shares its level among its looks
         let looks = if cell.may_stop && samples.bets.is_none() { f64::from(LOOKS_IN_ALL) } else { 1.0 };
         (margin > 0.0).then(|| samples.needed(margin, level / looks, POWER))

@@ -63,7 +63,7 @@ fn of_cell(plan: &Plan, index: usize, cell: &Cell, found: &mut Found) {
 }
 
 /// Level that each question of a claim has at least, before it is known how many will be asked.
-fn level(plan: &Plan, claim: &Claim) -> f64 {
+pub fn level(plan: &Plan, claim: &Claim) -> f64 {
     claim.alpha() / stakes::questions(plan, claim) as f64
 }
 

@@ -26,11 +26,14 @@ pub struct Cli {
 pub enum Command {
     /// Every experiment: its question, cells, predicted rays and time
     List,
-    /// The resolved grid and its predicted cost; samples nothing
+    /// The resolved grid, its predicted cost, and how many samples a margin takes; samples nothing
     Plan {
         /// Experiments to plan
         #[arg(required = true)]
         names: Vec<String>,
+        /// The relative margin to plan for, instead of that of the claims
+        #[arg(long, value_name = "M", value_parser = relative_error)]
+        margin: Option<f64>,
     },
     /// Rebuilds CSV, plots and page from the stored cells; samples nothing
     Report {

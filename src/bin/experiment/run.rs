@@ -1,10 +1,9 @@
 //! Running, planning, listing and reporting experiments.
 
 use crate::args::{Format, Options};
-use crate::files::{self, Source};
+use crate::files::Source;
 use crate::progress::Progress;
 use crate::{HELD, INTERRUPTED, NOT_HELD, study};
-use furnace::experiment::plan::RAYS_PER_SECOND;
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
 use furnace::report::{self, Lookup, answer, table, terminal};
@@ -162,37 +161,4 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         worst = worst.max(status(&plan, &rows));
     }
     Ok(worst)
-}
-
-/// Prints the resolved grid of each experiment.
-pub fn plans(names: &[String], options: &Options) -> Result<u8, Error> {
-    for name in names {
-        let plan = Source::read(name, options)?.plan(options)?;
-        println!("{}: {}\n", plan.name, plan.spec.question);
-        for cell in &plan.cells {
-            println!(
-                "{:<64} {:>12} samples {:>10.2e} rays",
-                plan.label(cell),
-                cell.samples,
-                cell.total_rays()
-            );
-        }
-        println!("{}", cost(&plan));
-    }
-    Ok(HELD)
-}
-
-/// Prints a paragraph on each experiment.
-pub fn list(options: &Options) -> Result<u8, Error> {
-    for name in files::names()? {
-        let plan = Source::read(&name, options)?.plan(options)?;
-        println!("{}: {}\n    {}", plan.name, plan.spec.question, cost(&plan));
-    }
-    Ok(HELD)
-}
-
-fn cost(plan: &Plan) -> String {
-    let rays: f64 = plan.cells.iter().map(|cell| cell.total_rays()).sum();
-    let seconds = rays / RAYS_PER_SECOND;
-    format!("{} cells, at most about {rays:.1e} rays, {seconds:.0} core-seconds", plan.cells.len())
 }
