@@ -41,13 +41,18 @@ pub(super) struct Sides<'a> {
 
 impl<'a> Sides<'a> {
     pub(super) fn of(q: &'a Question) -> Self {
-        let student = match &q.unfit {
+        let student = match why_no_t(q) {
             Some(_) => Side::Unfit,
             None => Side::Asymptotic(Student::of(q)),
         };
         let Some(bets) = &q.bets else { return Sides { above: student, below: student } };
         let below = if bets.stake.bound.is_some() { Side::Exact(bets) } else { student };
         Sides { above: Side::Exact(bets), below }
+    }
+
+    /// Whether neither side has any evidence.
+    pub(super) fn are_blind(&self) -> bool {
+        matches!((self.above, self.below), (Side::Unfit, Side::Unfit))
     }
 
     pub(super) fn are_exact(&self) -> bool {
@@ -58,6 +63,19 @@ impl<'a> Sides<'a> {
     pub(super) fn are_fit(&self) -> bool {
         !matches!(self.above, Side::Unfit) && !matches!(self.below, Side::Unfit)
     }
+}
+
+/// Why a question can not be answered by a t test.
+pub(super) fn why_no_t(q: &Question) -> Option<String> {
+    if q.unfit.is_some() {
+        return q.unfit.clone();
+    }
+    if q.df < 1.0 || (q.expected_df < 1.0 && q.expected_std_error != 0.0) {
+        return Some("fewer than two blocks".to_string());
+    }
+    // a spread of block means below the rounding of the mean is no variation
+    let varies = q.noise_free || q.std_error > f64::EPSILON * q.mean.abs();
+    (!varies).then(|| "no variation was seen, so there is no interval".to_string())
 }
 
 impl Side<'_> {
