@@ -147,6 +147,12 @@ pub struct Options {
     /// Realizations of every cell
     #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000_000))]
     pub samples: Option<u64>,
+    /// Every experiment there is
+    #[arg(long)]
+    pub all: bool,
+    /// Judge the claims and write nothing: what a nightly run wants. Takes a fresh seed, and prints it, unless --seed is given
+    #[arg(long)]
+    pub claims: bool,
     /// Only cells whose label contains TEXT
     #[arg(long, value_name = "TEXT", global = true)]
     pub filter: Option<String>,

@@ -1,6 +1,7 @@
 //! The command line: `experiment rr_sweep`.
 
 mod args;
+mod claims;
 mod export;
 mod files;
 mod plans;

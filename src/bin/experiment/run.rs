@@ -1,9 +1,9 @@
 //! Running, planning, listing and reporting experiments.
 
 use crate::args::{Format, Options};
-use crate::files::Source;
+use crate::files::{self, Source};
 use crate::progress::Progress;
-use crate::{HELD, INTERRUPTED, NOT_HELD, study};
+use crate::{HELD, INTERRUPTED, NOT_HELD, claims, study};
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
 use furnace::report::{self, Lookup, answer, table, terminal};
@@ -13,17 +13,32 @@ use std::time::Instant;
 
 /// Runs each named experiment; the worst exit status counts.
 pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    let every = if options.all { files::names()? } else { Vec::new() };
+    let names = if options.all { &every } else { names };
+    let fresh = Options { seed: options.seed.or_else(|| options.claims.then(fresh_seed)), ..options.clone() };
+    let options = &fresh;
     let sources = names.iter().map(|name| Source::read(name, options)).collect::<Result<Vec<_>, _>>()?;
     // a mistake in the last file shall not cost the time of the first
     let plans = sources.iter().map(|source| source.plan(options)).collect::<Result<Vec<_>, _>>()?;
     let mut worst = HELD;
     for (source, plan) in sources.iter().zip(&plans) {
-        worst = worst.max(one(source, plan, options, stop)?);
+        worst = worst.max(match options.claims {
+            true => claims::one(plan, options, stop)?,
+            false => one(source, plan, options, stop)?,
+        });
         if stop.load(Ordering::Relaxed) {
             break;
         }
     }
     Ok(worst)
+}
+
+/// A seed that nobody has chosen; it is printed, so that the run can be repeated.
+fn fresh_seed() -> u64 {
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    let seed = now.map_or(0, |now| now.as_nanos() as u64 % 1_000_000_007);
+    println!("seed {seed}: --seed {seed} repeats this");
+    seed
 }
 
 /// A pool of `--jobs` threads.
@@ -69,7 +84,11 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
 }
 
 /// The finished cells, and the seconds of each.
-fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
+pub fn sample(
+    plan: &Plan,
+    options: &Options,
+    stop: &AtomicBool,
+) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
     let pool = pool(options)?;
     let progress = Progress::new(plan, options.quiet || options.format == Format::Json);
     let mut cells = Vec::new();
@@ -92,7 +111,7 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Vec<Opti
     Ok((cells, seconds))
 }
 
-fn status(plan: &Plan, rows: &[Row]) -> u8 {
+pub fn status(plan: &Plan, rows: &[Row]) -> u8 {
     if mistake::all_held(plan, rows) { HELD } else { NOT_HELD }
 }
 

@@ -19,6 +19,38 @@ const STUDY: &str = "study.json";
 /// Runs a study.
 pub fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
     let store = Store::open(&source.report_folder(options))?;
+    let (detections, timing) = sample(plan, options, stop)?;
+    let interrupted = detections.iter().any(Option::is_none);
+    store.write("timing.csv", timing.as_bytes())?;
+    store.write("run.json", provenance(source, plan).as_bytes())?;
+    store.write(STUDY, &serde_json::to_vec(&detections).expect("counts have a JSON form"))?;
+    let held = write(plan, &detections, &store)?;
+    let partial = format!("{}-interrupted", source.name);
+    let folder = store.publish(interrupted.then_some(partial.as_str()))?;
+    print(plan, &detections, &folder, options);
+    Ok(if interrupted { INTERRUPTED } else { held })
+}
+
+/// Judges a study without a report.
+pub fn claims(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    let (detections, _) = sample(plan, options, stop)?;
+    let studied = Studied::new(plan, &detections);
+    println!("{}:", plan.name);
+    study::sentences(&studied).iter().for_each(|sentence| println!("    {sentence}"));
+    let interrupted = detections.iter().any(Option::is_none);
+    Ok(if interrupted { INTERRUPTED } else { status(&studied) })
+}
+
+fn status(studied: &Studied<'_>) -> u8 {
+    if studied.holds() { HELD } else { NOT_HELD }
+}
+
+/// What the runs of each cell have shown, and how long they took.
+fn sample(
+    plan: &Plan,
+    options: &Options,
+    stop: &AtomicBool,
+) -> Result<(Vec<Option<Detection>>, String), Error> {
     let pool = pool(options)?;
     let progress = Progress::new(plan, options.quiet || options.format == Format::Json);
     let mut detections = Vec::new();
@@ -36,15 +68,7 @@ pub fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -
         detections.push(detection);
     }
     progress.finish();
-    let interrupted = detections.iter().any(Option::is_none);
-    store.write("timing.csv", timing.as_bytes())?;
-    store.write("run.json", provenance(source, plan).as_bytes())?;
-    store.write(STUDY, &serde_json::to_vec(&detections).expect("counts have a JSON form"))?;
-    let held = write(plan, &detections, &store)?;
-    let partial = format!("{}-interrupted", source.name);
-    let folder = store.publish(interrupted.then_some(partial.as_str()))?;
-    print(plan, &detections, &folder, options);
-    Ok(if interrupted { INTERRUPTED } else { held })
+    Ok((detections, timing))
 }
 
 /// Rebuilds the report of a stored study.
@@ -73,7 +97,7 @@ fn write(plan: &Plan, detections: &[Option<Detection>], store: &Store) -> Result
     store.write("results.csv", &study::csv(&studied))?;
     let interrupted = detections.iter().any(Option::is_none);
     store.write("index.html", study::page(&studied, interrupted).as_bytes())?;
-    Ok(if studied.holds() { HELD } else { NOT_HELD })
+    Ok(status(&studied))
 }
 
 fn print(plan: &Plan, detections: &[Option<Detection>], folder: &Path, options: &Options) {
