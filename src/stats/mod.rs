@@ -14,7 +14,6 @@ pub mod bets;
 mod bets_hold;
 pub mod binomial;
 pub mod calibrate;
-mod calibrate_rows;
 mod evidence;
 pub mod judge;
 #[cfg(test)]

@@ -8,7 +8,9 @@ use super::source::Source;
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 use std::fmt;
 
-pub use super::calibrate::{Count, Instrument, NullRow, Rates, Setting, measure, measure_at, predicted, rows};
+pub use super::calibrate::{
+    Count, Instrument, NullRow, Rates, Setting, measure, measure_at, predicted, rows,
+};
 
 /// A law of non-negative samples. Written in files as `{ rare = { p = 0.001 } }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,7 +42,11 @@ pub enum Law {
 }
 
 /// A number for which `holds`, or why it is none.
-fn within<'de, D: Deserializer<'de>>(d: D, wanted: &str, holds: impl Fn(f64) -> bool) -> Result<f64, D::Error> {
+fn within<'de, D: Deserializer<'de>>(
+    d: D,
+    wanted: &str,
+    holds: impl Fn(f64) -> bool,
+) -> Result<f64, D::Error> {
     let v = f64::deserialize(d)?;
     if holds(v) { Ok(v) } else { Err(D::Error::custom(format!("{v} is out of range: {wanted}"))) }
 }
@@ -50,7 +56,9 @@ fn p<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
 }
 
 fn sigma<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
-    within(d, "sigma lies in (0, 3]; beyond, the variance exceeds 8100 squared means", |v| v > 0.0 && v <= 3.0)
+    within(d, "sigma lies in (0, 3]; beyond, the variance exceeds 8100 squared means", |v| {
+        v > 0.0 && v <= 3.0
+    })
 }
 
 fn albedo<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
@@ -186,9 +194,15 @@ mod tests {
             let (variance, se) = (law.variance().unwrap(), m.std_error().unwrap());
             assert!((m.mean - law.mean()).abs() <= 4.0 * se + 1e-12, "{law}: {} {se}", m.mean);
             let error = m.variance_std_error().unwrap();
-            assert!((m.variance().unwrap() - variance).abs() <= 4.0 * error + 1e-12, "{law}: {variance} {error}");
+            assert!(
+                (m.variance().unwrap() - variance).abs() <= 4.0 * error + 1e-12,
+                "{law}: {variance} {error}"
+            );
             let skewness = law.skewness().unwrap();
-            assert!((m.skewness().unwrap_or(0.0) - skewness).abs() <= 0.05 * skewness + 0.01, "{law}: {skewness}");
+            assert!(
+                (m.skewness().unwrap_or(0.0) - skewness).abs() <= 0.05 * skewness + 0.01,
+                "{law}: {skewness}"
+            );
         }
     }
 

@@ -1,9 +1,9 @@
-//! What [`super::calibrate`] measured, as the lines of a table.
+//! What was measured, as the lines of a table.
 
-use super::calibrate::{Count, Instrument, Rates, Setting, measure_at, predicted};
-use super::nulls::Law;
-use super::question::Engine;
-use super::skewed;
+use super::{Count, Instrument, Rates, Setting, measure_at, predicted};
+use crate::stats::nulls::Law;
+use crate::stats::question::Engine;
+use crate::stats::skewed;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 

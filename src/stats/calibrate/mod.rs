@@ -4,31 +4,23 @@
 //! the interval at a time that has nothing to do with the samples, t tests at the end. Where nothing is wrong, the share
 //! of runs that reject is an error rate. Samples multiplied by 1 + bias show what is found, at the price of a product.
 
-use super::bets::{Bets, PER_BET, Stake, Table};
+mod rows;
+mod run;
+
+pub use rows::{NullRow, rows};
+
 use super::binomial::clopper_pearson;
 use super::nulls::Law;
 use super::power::reach;
-use super::question::{Engine, Question};
-use super::sides::{POWER, Sides};
-use super::skewed;
-use super::source::Source;
-use super::student::one_sided_p;
-use super::tails::{Light, Tail};
-use super::{Moments, calibrate_rows};
+use super::question::Engine;
+use super::sides::POWER;
 use rayon::prelude::*;
+use run::Bench;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub use calibrate_rows::{NullRow, rows};
-
 /// Confidence of the intervals of all rates.
 pub const CONFIDENCE: f64 = 0.999;
-
-/// Looks at the bets of a run, at most.
-const MOST_LOOKS: u64 = 4096;
-
-/// Looks of the t test that peeks: at the end and after a half, a quarter, ... of the samples.
-const PEEKS: u32 = 10;
 
 /// What judges, and on which side: *above* says that the mean is larger than it should be, *below* that it is smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,7 +30,7 @@ pub enum Instrument {
     BetsAbove,
     /// Likewise; only where there is a bound.
     BetsBelow,
-    /// The limits of the bets do not contain the mean at a random time. Exact.
+    /// The limits that the bets give do not contain the mean at a random time. Exact.
     Interval,
     /// The corrected t with the skewness of theory, where by that the samples suffice: decides where theory is known.
     KnownBelow,
@@ -52,7 +44,7 @@ pub enum Instrument {
     CorrectedBelow,
     /// Likewise.
     CorrectedAbove,
-    /// Student's t; a sample without spread that differs from the mean is rejected.
+    /// Student's t; like the others it says nothing against samples without spread, such as those without any hit.
     StudentBelow,
     /// Likewise.
     StudentAbove,
@@ -218,145 +210,37 @@ pub fn predicted(law: &Law, samples: u64, engine: Engine, level: f64) -> Option<
     Some((-shift / (1.0 + shift), above))
 }
 
-/// How runs are judged.
-struct Bench<'a> {
-    setting: &'a Setting,
-    mean: f64,
-    stake: Stake,
-    /// Samples between looks.
-    chunk: u64,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// What was seen in one run.
-struct Seen {
-    /// Logarithms of the largest fortunes.
-    above: f64,
-    below: f64,
-    /// Bets at a random time.
-    stopped: Bets,
-    /// p-values of the corrected t, below and above, with the sample's and theory's skewness.
-    corrected: [f64; 2],
-    known: [f64; 2],
-    student: [f64; 2],
-    /// The smallest two-sided p-value.
-    peeks: f64,
-    skewness: f64,
-    red: bool,
-}
-
-impl<'a> Bench<'a> {
-    fn new(setting: &'a Setting) -> Self {
-        let mean = setting.law.mean();
-        // the bound is that of what is bet on: a bias that exceeded it would be told apart at once
-        let bound = setting.law.bound().map(|bound| bound * (1.0 + setting.bias.max(0.0)));
-        let stake = Stake { scale: mean, bound: bound.filter(|bound| *bound > mean) };
-        let chunk = PER_BET * setting.samples.div_ceil(PER_BET * MOST_LOOKS);
-        Bench { setting, mean, stake, chunk }
+    #[test]
+    fn levels_share_their_samples_and_a_stop_ends_it() {
+        let setting = Setting { law: Law::Rare { p: 0.05 }, samples: 700, runs: 300, bias: 0.3, seed: 9 };
+        let both = measure_at(&setting, &[0.1, 0.01], &AtomicBool::new(false)).unwrap();
+        for rates in &both {
+            assert_eq!(*rates, measure(&setting.law, 700, 300, rates.level, 0.3, 9));
+            assert!(rates.counts.iter().all(|count| count.rejected <= count.of && count.of <= 300));
+        }
+        assert!(Instrument::ALL.iter().all(|i| both[0].count(*i).of >= both[0].count(*i).rejected));
+        assert_eq!(measure_at(&setting, &[0.1], &AtomicBool::new(true)), None);
     }
 
-    fn watch(&self, run: u64) -> Seen {
-        let Setting { law, samples, bias, seed, .. } = *self.setting;
-        let mut draw = law.samples(seed, run).map(|x| (1.0 + bias) * x);
-        let stop = self.random_look(run);
-        let (mut moments, mut tail, mut bets) = (Moments::default(), Tail::default(), Bets::new(self.stake));
-        let (mut above, mut below, mut peeks) = (0.0_f64, 0.0_f64, 1.0_f64);
-        let mut stopped = bets.clone();
-        let mut values = Vec::with_capacity(self.chunk as usize);
-        for look in 1..=samples.div_ceil(self.chunk) {
-            let left = samples - moments.n;
-            values.clear();
-            values.extend(draw.by_ref().take(left.min(self.chunk) as usize));
-            for &x in &values {
-                moments.push(x);
-                tail.push(x);
-                if (0..PEEKS).any(|halvings| moments.n == samples >> halvings) {
-                    peeks = peeks.min(2.0 * self.student(&moments).into_iter().fold(1.0, f64::min));
-                }
-            }
-            bets.merge(&self.bet(&values));
-            above = above.max(bets.log_above(self.mean));
-            below = below.max(bets.log_below(self.mean).unwrap_or(0.0));
-            if look == stop {
-                stopped.clone_from(&bets);
+    #[test]
+    fn instruments_stand_in_their_order() {
+        for (i, instrument) in Instrument::ALL.iter().enumerate() {
+            assert_eq!(*instrument as usize, i);
+        }
+    }
+
+    #[test]
+    fn what_does_not_vary_is_never_rejected_and_nothing_panics() {
+        for law in [Law::Rare { p: 1.0 }, Law::Walk { albedo: 0.0, q: 0.5 }, Law::Rare { p: 1e-300 }] {
+            for samples in [1, 2, 17] {
+                let rates = measure(&law, samples, 3, 0.5, 0.0, 1);
+                let tests = &rates.counts[..Instrument::Red as usize];
+                assert!(tests.iter().all(|count| count.rejected == 0), "{law} {samples}: {tests:?}");
             }
         }
-        let skewness = moments.skewness().unwrap_or(0.0);
-        Seen {
-            above,
-            below,
-            stopped,
-            corrected: self.corrected(&moments, skewness),
-            known: law.skewness().map_or([1.0; 2], |skewness| self.corrected(&moments, skewness)),
-            student: self.student(&moments),
-            peeks,
-            skewness,
-            red: tail.guard().0 == Light::Red,
-        }
-    }
-
-    /// The number of a look, which is as likely early as late on a logarithmic scale.
-    fn random_look(&self, run: u64) -> u64 {
-        let looks = self.setting.samples.div_ceil(self.chunk);
-        let u = Source::keyed(!self.setting.seed, run).uniform();
-        (libm::exp(u * libm::log(looks as f64 + 1.0)) as u64).clamp(1, looks)
-    }
-
-    /// Bets on the samples between two looks.
-    fn bet(&self, values: &[f64]) -> Bets {
-        let together = self.stake.samples_per_bet() as usize;
-        let mut table = Table::new(self.stake);
-        let averages = values.chunks(together);
-        let bets = averages.len() as u64;
-        averages.for_each(|part| table.push(part.iter().sum::<f64>() / part.len() as f64));
-        table.close(bets)
-    }
-
-    /// p-values of the bench's t test, below and above; 1 where it finds no spread to judge by.
-    fn corrected(&self, moments: &Moments, skewness: f64) -> [f64; 2] {
-        let question = Question::about(moments, None, self.mean, self.mean);
-        if question.std_error.is_nan() || question.std_error <= f64::EPSILON * question.mean.abs() {
-            return [1.0; 2];
-        }
-        let question = Question { skewness: skewness / libm::sqrt(moments.n as f64), ..question };
-        let sides = Sides::of(&question);
-        [sides.below.p_below(self.mean), sides.above.p_above(self.mean)]
-    }
-
-    /// p-values of Student's t, below and above; NaN where there is none.
-    fn student(&self, moments: &Moments) -> [f64; 2] {
-        let t = moments.std_error().map_or(f64::NAN, |se| (moments.mean - self.mean) / se);
-        [one_sided_p(-t, moments.n as f64 - 1.0), one_sided_p(t, moments.n as f64 - 1.0)]
-    }
-
-    /// What each of [`Instrument::ALL`] says of a run: rejected or not, or nothing.
-    fn says(&self, seen: &Seen, level: f64) -> [Option<bool>; Instrument::ALL.len()] {
-        let enough = -libm::log(level);
-        let n = self.setting.samples;
-        let bounded = self.stake.bound.is_some();
-        // a side of a two-sided test
-        let suffices = |skewness| skewed::trustworthy(n, skewness, (2.0 * level).min(1.0));
-        let theory = self.setting.law.skewness().is_some_and(suffices);
-        let guarded = !seen.red && suffices(seen.skewness);
-        let half = if bounded { level / 2.0 } else { level };
-        let (low, high) = (seen.stopped.lower_limit(half), seen.stopped.upper_limit(half));
-        let [known_below, known_above] = seen.known.map(|p| theory.then_some(p <= level));
-        let [guarded_below, guarded_above] = seen.corrected.map(|p| guarded.then_some(p <= level));
-        let [corrected_below, corrected_above] = seen.corrected.map(|p| Some(p <= level));
-        let [student_below, student_above] = seen.student.map(|p| Some(p <= level));
-        [
-            Some(seen.above >= enough),
-            bounded.then_some(seen.below >= enough),
-            Some(self.mean < low || self.mean > high),
-            known_below,
-            known_above,
-            guarded_below,
-            guarded_above,
-            corrected_below,
-            corrected_above,
-            student_below,
-            student_above,
-            Some(seen.peeks <= level),
-            Some(seen.red),
-        ]
     }
 }
