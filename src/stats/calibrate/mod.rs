@@ -11,7 +11,7 @@ pub use rows::{NullRow, rows};
 
 use super::binomial::clopper_pearson;
 use super::nulls::Law;
-use super::power::reach;
+use super::power::Samples as Plan;
 use super::question::Engine;
 use super::sides::POWER;
 use rayon::prelude::*;
@@ -200,14 +200,23 @@ pub fn measure_at(setting: &Setting, levels: &[f64], stop: &AtomicBool) -> Optio
     Some(levels.iter().zip(sums).map(rates).collect())
 }
 
-/// Biases below and above 0 which an engine should find in nine of ten runs, by [`reach`]: the standard error is that of
-/// the multiplied samples. The latter is infinite where the samples are too few for any, both are `None` where the
-/// variance is infinite.
+/// Biases below and above 0 which an engine should find in nine of ten runs, see [`Plan::detectable`]: the noise is that of
+/// the multiplied samples. Infinite where the samples are too few for any; `None` where the variance is infinite.
 pub fn predicted(law: &Law, samples: u64, engine: Engine, level: f64) -> Option<(f64, f64)> {
-    let se = libm::sqrt(law.variance()? / samples as f64) / law.mean();
-    let shift = reach(engine, samples as f64 - 1.0, level, POWER) * se;
-    let above = if shift < 1.0 { shift / (1.0 - shift) } else { f64::INFINITY };
-    Some((-shift / (1.0 + shift), above))
+    let (mean, variance) = (law.mean(), law.variance()?);
+    let stake = run::stake(law, 0.0);
+    let found = |sign: f64, room: Option<f64>| {
+        let bets = room.filter(|_| engine == Engine::Exact).map(|room| (room, stake.samples_per_bet()));
+        let mut bias = 0.0_f64;
+        // more bias, more noise: converges to where both fit, if anywhere
+        for _ in 0..1000 {
+            let scale = (1.0 + sign * bias).max(0.0);
+            let plan = Plan { variance: scale * scale * variance, bets };
+            bias = plan.detectable(samples as f64, level, POWER) / mean;
+        }
+        sign * if bias < 1e3 { bias } else { f64::INFINITY }
+    };
+    Some((found(-1.0, stake.bound.map(|bound| bound - mean)), found(1.0, Some(mean))))
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::{Instrument, Setting};
 use crate::stats::Moments;
 use crate::stats::bets::{Bets, PER_BET, Stake, Table};
+use crate::stats::nulls::Law;
 use crate::stats::question::Question;
 use crate::stats::sides::Sides;
 use crate::stats::skewed;
@@ -42,12 +43,15 @@ pub(super) struct Seen {
     red: bool,
 }
 
+/// What is bet with. The bound is that of what is bet on: a bias that exceeded it would be told apart at once.
+pub(super) fn stake(law: &Law, bias: f64) -> Stake {
+    let bound = law.bound().map(|bound| bound * (1.0 + bias.max(0.0)));
+    Stake { scale: law.mean(), bound: bound.filter(|bound| *bound > law.mean()) }
+}
+
 impl<'a> Bench<'a> {
     pub(super) fn new(setting: &'a Setting) -> Self {
-        let mean = setting.law.mean();
-        // the bound is that of what is bet on: a bias that exceeded it would be told apart at once
-        let bound = setting.law.bound().map(|bound| bound * (1.0 + setting.bias.max(0.0)));
-        let stake = Stake { scale: mean, bound: bound.filter(|bound| *bound > mean) };
+        let (mean, stake) = (setting.law.mean(), stake(&setting.law, setting.bias));
         let chunk = PER_BET * setting.samples.div_ceil(PER_BET * MOST_LOOKS);
         Bench { setting, mean, stake, chunk }
     }
@@ -172,7 +176,6 @@ fn varies(moments: &Moments) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stats::nulls::Law;
 
     fn setting(law: Law, bias: f64) -> Setting {
         Setting { law, samples: 700, runs: 300, bias, seed: 9 }
