@@ -1,12 +1,8 @@
 //! Promise: the instruments that decide are wrong as seldom as they say, and find what they say they find, on samples
 //! whose mean is known exactly. Fixed seeds: the counts are the same on every machine.
 //!
-//! Bets keep their level everywhere, usually by far. No t test does so exactly. What is asserted of it is what was found
-//! (2048 samples a run, 20 000 runs, seed 1, in percent of the runs in which it may decide; 99.9 % intervals):
-//!
-//! | law | at 5 %, below | above | at 0.1 %, below | above | decides at 5 %, 0.1 % |
-//! |---|---|---|---|---|---|
-//! TABLE
+//! Bets keep their level everywhere, by far as a rule. No t test does so exactly; how near it comes, and where it does
+//! not, is told in `stats::calibrate`.
 
 use furnace::experiment::ledger::Stream;
 use furnace::stats::nulls::{Count, Instrument, Law, Rates, Setting, measure, measure_at, predicted};
@@ -56,7 +52,7 @@ fn bets_keep_their_level() {
 fn the_t_that_may_decide_is_near_its_level() {
     use Instrument::*;
     for law in [Law::Rare { p: 0.05 }, LOGNORMAL, GEOMETRIC, BOUNDED] {
-        for rates in rates(law, 2048, 8000) {
+        for rates in rates(law, 2048, 6000) {
             for instrument in [KnownBelow, KnownAbove, GuardedBelow, GuardedAbove] {
                 let (count, level) = (rates.count(instrument), rates.level);
                 assert!(low(count) <= 1.1 * level, "{law} at {level}: {} {count:?}", instrument.name());
@@ -68,7 +64,7 @@ fn the_t_that_may_decide_is_near_its_level() {
 #[test]
 fn what_decides_nothing_shows_why() {
     use Instrument::*;
-    let [five, thousandth] = &rates(INFINITE, 2048, 8000)[..] else { panic!("two levels") };
+    let [five, thousandth] = &rates(INFINITE, 2048, 5000)[..] else { panic!("two levels") };
     assert!(low(five.count(StudentBelow)) > 0.15 && high(five.count(StudentAbove)) < 0.01);
     assert!(low(five.count(CorrectedBelow)) > 0.1);
     assert!(low(five.count(Peeks)) > 0.5 && low(thousandth.count(Peeks)) > 0.25);

@@ -3,6 +3,31 @@
 //! Each run draws fresh samples of a [`Law`] and judges them as the bench would: bets looked at after every few samples,
 //! the interval at a time that has nothing to do with the samples, t tests at the end. Where nothing is wrong, the share
 //! of runs that reject is an error rate. Samples multiplied by 1 + bias show what is found, at the price of a product.
+//!
+//! Rejections of a true mean in percent of 20 000 runs of 2048 samples, below and above (seed 1; an interval of 99.9 %
+//! reaches about ± 0.5 at a level of 5 %, ± 0.08 at 0.1 %):
+//!
+//! | law | level | bets | guarded t | Student | ten peeks |
+//! |---|---|---|---|---|---|
+//! | rare, p = 0.001 | 5 | 0, 0.68 | never decides | 0, 0.49 | 0.19 |
+//! | | 0.1 | 0, 0 | never decides | 0, 0 | 0 |
+//! | rare, p = 0.01 | 5 | 0.35, 0.71 | never decides | 9.1, 2.6 | 18 |
+//! | | 0.1 | 0.005, 0.01 | never decides | 0.85, 0 | 3.9 |
+//! | rare, p = 0.05 | 5 | 0.59, 0.76 | 5.0, 5.4 | 6.2, 4.5 | 27 |
+//! | | 0.1 | 0.005, 0.005 | 0.08, 0.08 | 0.18, 0.03 | 2.4 |
+//! | lognormal, sigma = 1 | 5 | -, 0.21 | 5.6, 4.7 of 95 % | 6.5, 3.6 | 49 |
+//! | | 0.1 | -, 0 | 0.13, 0.09 of 75 % | 0.32, 0.03 | 12 |
+//! | walk, 0.5, q = 0.5 | 5 | -, 0.005 | 5.0, 4.8 | 5.6, 4.4 | 36 |
+//! | | 0.1 | -, 0 | 0.09, 0.07 | 0.13, 0.04 | 4.6 |
+//! | walk, 0.8, q = 0.9 | 5 | 0, 0 | 5.1, 4.9 | 5.1, 4.9 | 32 |
+//! | | 0.1 | 0, 0 | 0.06, 0.08 | 0.06, 0.08 | 1.5 |
+//! | walk, 0.5, q = 0.2: infinite variance | 5 | -, 0.28 | 51, 0 of 9.5 % | 19, 0.5 | 62 |
+//! | | 0.1 | -, 0.005 | 18, 0 of 1.3 % | 3.9, 0 | 33 |
+//!
+//! So the guarded t is at its level, give or take a tenth, where the variance is finite. Where it is not, the guard lets
+//! few samples pass, and those are the ones whose bright paths have not come: half of them, or a fifth, are called too
+//! dark. Of all runs that is 4.8 % at 5 %, but 0.23 % at 0.1 %, and with 32 768 samples 1.1 % (22 of 2000 runs), eleven
+//! times what it should be: the guard helps, and is no proof. Where theory knows the variance to be infinite, no t test decides.
 
 mod rows;
 mod run;
