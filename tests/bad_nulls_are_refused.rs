@@ -3,7 +3,9 @@
 
 use furnace::experiment::spec::{self, Spec};
 use furnace::experiment::{Error, error::Place};
+use furnace::stats::nulls::{Instrument, NullRow};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 const GOOD: &str = r#"question = "How often are the instruments wrong?"
 samples = 64
@@ -92,6 +94,24 @@ fn the_good_file_is_read() {
     let without = GOOD.replace("bias = 0.1\n", "");
     assert_eq!(read(&without).unwrap().null[0].bias, [0.0]);
     assert!(read(GOOD.split("[[null]]").next().unwrap()).unwrap().null.is_empty());
+}
+
+#[test]
+fn a_null_becomes_the_lines_of_a_table() {
+    let mut null = read(GOOD).unwrap().null.remove(0);
+    (null.runs, null.bias) = (10, vec![0.0, 0.5]);
+    let rows = null.rows(1, &AtomicBool::new(false)).unwrap();
+    assert_eq!(rows.len(), 2 * 2 * Instrument::ALL.len());
+    let at = |row: &NullRow| (row.bias, row.level, row.instrument.clone());
+    assert_eq!(at(&rows[0]), (0.0, 0.05, "bets, above".to_owned()));
+    assert_eq!(at(rows.last().unwrap()), (0.5, 1e-3, "red guard".to_owned()));
+    for row in &rows {
+        assert!(row.rejected <= row.runs && row.runs <= 10 && row.low <= row.high && row.samples == 2048);
+        // where nothing was looked at, the note says why
+        assert!(row.runs > 0 || !row.note.is_empty(), "{row:?}");
+    }
+    assert_eq!(null.rows(1, &AtomicBool::new(false)).unwrap(), rows);
+    assert_eq!(null.rows(1, &AtomicBool::new(true)), None);
 }
 
 #[test]

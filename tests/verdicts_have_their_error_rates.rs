@@ -64,7 +64,7 @@ fn the_t_that_may_decide_is_near_its_level() {
 #[test]
 fn what_decides_nothing_shows_why() {
     use Instrument::*;
-    let [five, thousandth] = &rates(INFINITE, 2048, 5000)[..] else { panic!("two levels") };
+    let [five, thousandth] = &rates(INFINITE, 2048, 20_000)[..] else { panic!("two levels") };
     assert!(low(five.count(StudentBelow)) > 0.15 && high(five.count(StudentAbove)) < 0.01);
     assert!(low(five.count(CorrectedBelow)) > 0.1);
     assert!(low(five.count(Peeks)) > 0.5 && low(thousandth.count(Peeks)) > 0.25);
@@ -72,7 +72,8 @@ fn what_decides_nothing_shows_why() {
     assert!(low(five.count(Red)) > 0.78 && low(five.count(GuardedBelow)) > 0.4);
     let all = |rates: &Rates| Count { of: rates.runs, ..rates.count(GuardedBelow) };
     assert!(low(all(five)) <= 0.05, "{:?}", all(five));
-    assert!(all(thousandth).rate() > 1e-3 && high(all(thousandth)) <= 6e-3, "{:?}", all(thousandth));
+    // more than was promised, even so
+    assert!(low(all(thousandth)) > 1e-3 && high(all(thousandth)) <= 4e-3, "{:?}", all(thousandth));
     // theory knows better, and lets no t test decide
     assert_eq!(five.count(KnownBelow).of, 0);
     let skewed = &rates(RARE, 2048, 4000)[0];
@@ -98,7 +99,7 @@ fn bets_find_what_is_predicted() {
         // few bets, which are as bold as can be; and many
         (BOUNDED, 2048, 1000, BetsAbove, 0.9),
         (BOUNDED, 2048, 1000, BetsBelow, 0.9),
-        (BOUNDED, 32_768, 200, BetsAbove, 0.9),
+        (BOUNDED, 32_768, 100, BetsAbove, 0.9),
         (LOGNORMAL, 2048, 1000, BetsAbove, 0.9),
         (GEOMETRIC, 2048, 1000, BetsAbove, 0.9),
         (RARE, 8192, 400, BetsAbove, 0.9),
