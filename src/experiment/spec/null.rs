@@ -27,6 +27,12 @@ pub struct NullSpec {
 }
 
 impl NullSpec {
+    /// The same with a hundredth of the runs, if it is to be quick.
+    pub fn planned(&self, quick: bool) -> Self {
+        let runs = if quick { (self.runs / 100).max(2) } else { self.runs };
+        NullSpec { runs, ..self.clone() }
+    }
+
     /// The lines of its table, bias by bias; all chance follows from `seed`. `None` if `stop` was raised before the end.
     pub fn rows(&self, seed: u64, stop: &AtomicBool) -> Option<Vec<NullRow>> {
         let setting = Setting { law: self.law, samples: self.samples, runs: self.runs, bias: 0.0, seed };

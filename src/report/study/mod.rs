@@ -1,6 +1,7 @@
 //! Reports of studies: how often each instrument finds each mistake, how often it cries wolf.
 
 mod csv;
+pub mod nulls;
 mod page;
 
 pub use csv::csv;
@@ -10,21 +11,23 @@ use crate::experiment::Plan;
 use crate::experiment::study::{Detection, Instrument};
 use crate::faults::Effect;
 use crate::stats::binomial::clopper_pearson;
+use crate::stats::nulls::NullRow;
 
 /// A cell with what its runs have shown.
 pub struct Studied<'a> {
     plan: &'a Plan,
     cells: Vec<(usize, &'a Detection)>,
+    nulls: &'a [NullRow],
 }
 
 /// A mistake counts as found where its share of detections is at least this.
 pub const FOUND: f64 = 0.99;
 
 impl<'a> Studied<'a> {
-    /// The finished cells of a study.
-    pub fn new(plan: &'a Plan, detections: &'a [Option<Detection>]) -> Self {
+    /// The finished cells of a study, and what synthetic laws have shown.
+    pub fn new(plan: &'a Plan, detections: &'a [Option<Detection>], nulls: &'a [NullRow]) -> Self {
         let cells = detections.iter().enumerate().filter_map(|(i, d)| Some((i, d.as_ref()?))).collect();
-        Studied { plan, cells }
+        Studied { plan, cells, nulls }
     }
 
     fn effect(&self, cell: usize) -> Option<Effect> {
@@ -60,7 +63,8 @@ impl<'a> Studied<'a> {
     /// Whether each mistake is found in some scene, and sound cells and mistakes without effect raise no more alarms than
     /// their level allows.
     pub fn holds(&self) -> bool {
-        self.missed(Instrument::Verdict).is_empty()
+        nulls::hold(self.nulls)
+            && self.missed(Instrument::Verdict).is_empty()
             && Instrument::ALL
                 .iter()
                 .filter(|i| !i.is_rival())
@@ -143,5 +147,6 @@ pub fn sentences(studied: &Studied<'_>) -> Vec<String> {
             ));
         }
     }
+    sentences.extend(nulls::sentences(studied.nulls));
     sentences
 }

@@ -1,6 +1,6 @@
 //! `index.html` of a study.
 
-use super::{FOUND, Studied, sentences};
+use super::{FOUND, Studied, nulls, sentences};
 use crate::experiment::study::{Detection, Instrument};
 use crate::faults::Fault;
 use crate::report::page::style;
@@ -29,11 +29,15 @@ pub fn page(studied: &Studied<'_>, interrupted: bool) -> String {
                         ul { @for sentence in sentences(studied) { li { (sentence) } } }
                     }
                     section { h2 { "Detections" } p { (legend(seeds)) } (matrix(studied)) }
+                    @if !studied.nulls.is_empty() {
+                        section { h2 { "Samples of known mean" } (nulls::table(studied.nulls)) }
+                    }
                     (catalogue(studied))
                     section {
                         h2 { "How to repeat this" }
                         pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) }
-                        p { a href="results.csv" { "results.csv" } ", " a href="timing.csv" { "timing.csv" } ", "
+                        p { a href="results.csv" { "results.csv" } ", " @if !studied.nulls.is_empty() { a href="nulls.csv" { "nulls.csv" } ", " }
+                            a href="timing.csv" { "timing.csv" } ", "
                             a href="run.json" { "run.json" } "." }
                     }
                 }
