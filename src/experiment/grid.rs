@@ -82,6 +82,7 @@ fn grid_cells(
                     rays: rays(&scene.choice.value, &built, &whole),
                     finds_all: making::finds_all(&whole, &built),
                     address: address(spec, &scene.choice.value, &whole, fault),
+                    paired: spec.streams == Streams::Paired,
                     streams: Vec::new(),
                     may_stop: false,
                 });

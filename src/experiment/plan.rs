@@ -49,6 +49,8 @@ pub struct CellPlan {
     pub finds_all: bool,
     /// Where its random streams live.
     pub address: Address,
+    /// Whether it shares its random numbers with other cells of its scene.
+    pub paired: bool,
     /// What is bet on.
     pub streams: Vec<Stream>,
     /// Whether it may end before all samples are taken: nothing but claims about this cell alone wants them.
