@@ -1,19 +1,16 @@
 //! The resolved experiment: every cell with its samples and what it will cost.
 
-use super::cell::Channels;
 use super::error::Error;
 use super::grid;
 use super::ledger::Stream;
 use super::references::{self, NamedReference};
-use super::run::LOOKS_IN_ALL;
-use super::spec::{self, Claim, Limits, Plot, Spec};
+use super::spec::{self, Claim, Plot, Spec};
 use super::stakes;
-use super::study;
 use crate::estimator::{Estimate, Estimator, MAX_RAYS, Property};
 use crate::faults::{Fault, Faulty};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
-use crate::truth::{ClosedForm, Counted, Known, Truth};
+use crate::truth::Truth;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -87,6 +84,8 @@ pub struct Plan {
     pub swept: Vec<String>,
     /// Stored images that the file names.
     pub references: Vec<NamedReference>,
+    /// How many questions each claim asks at most in the whole experiment, if only one of its cells is run.
+    pub(super) whole: Option<Vec<usize>>,
 }
 
 /// What the command line changes.
@@ -98,6 +97,8 @@ pub struct Overrides {
     pub samples: Option<u64>,
     /// Only cells whose label contains this text.
     pub filter: Option<String>,
+    /// Only the cell with this label, as if the others were run beside it: the same samples, bit for bit.
+    pub only: Option<String>,
     /// A hundredth of the samples.
     pub quick: bool,
     /// Run cells that are out of proportion.
@@ -109,12 +110,6 @@ const MAX_CELL_RAYS: f64 = 1e11;
 
 /// Rays a second and core that predicted times assume.
 pub const RAYS_PER_SECOND: f64 = 1e7;
-
-/// Paths a block, at most.
-const BLOCK_PATHS: u64 = 4096;
-
-/// Blocks a cell, at least, if it has the samples.
-const MIN_BLOCKS: u64 = 64;
 
 /// The cells of an experiment file, whose text is `source`, without their samples: all that can be said of it before
 /// its references are made.
@@ -129,7 +124,7 @@ impl Plan {
         spec.seed = overrides.seed.unwrap_or(spec.seed);
         let (cells, swept) = grid::resolve(&spec, file, source)?;
         let references = references::load(&spec, &cells, file, source)?;
-        let mut plan = Plan { name: name.to_owned(), spec, cells, swept, references };
+        let mut plan = Plan { name: name.to_owned(), spec, cells, swept, references, whole: None };
         plan.distinct()?;
         plan.about_something()?;
         if let Some(text) = &overrides.filter {
@@ -141,6 +136,9 @@ impl Plan {
         }
         stakes::lay(&mut plan);
         plan.allot(overrides);
+        if let Some(wanted) = &overrides.only {
+            plan.keep_only(wanted)?;
+        }
         plan.cells.iter().try_for_each(|cell| plan.proportionate(cell, overrides.force))?;
         Ok(plan)
     }
@@ -160,6 +158,32 @@ impl Plan {
         let here = self.references.iter().filter(|r| r.scene == cell.scene_label);
         let stored: Vec<_> = here.map(|r| Arc::clone(&r.reference)).collect();
         Truth::of(&cell.scene, &cell.estimator, &stored)
+    }
+
+    /// How many questions a claim, by its index, asks at most.
+    pub(super) fn questions(&self, claim: usize) -> usize {
+        let counted = || stakes::questions(self, &self.spec.claim[claim]);
+        self.whole.as_ref().map_or_else(counted, |whole| whole[claim])
+    }
+
+    /// Forgets all cells but one, but not how many questions were to share the error probabilities: when a cell may end
+    /// depends on that.
+    fn keep_only(&mut self, wanted: &str) -> Result<(), Error> {
+        let labels: Vec<String> = self.cells.iter().map(|cell| self.label(cell)).collect();
+        if !labels.iter().any(|label| label == wanted) {
+            let there = labels.iter().map(|label| format!("\n  {label}")).collect::<String>();
+            return Err(Error::Refused(format!(
+                "no cell of {} is called `{wanted}`; there are:{there}",
+                self.name
+            )));
+        }
+        // studies judge each cell as if it were the whole experiment
+        if self.spec.seeds.is_none() {
+            self.whole = Some((0..self.spec.claim.len()).map(|claim| self.questions(claim)).collect());
+        }
+        let swept = &self.swept;
+        self.cells.retain(|cell| label(cell, swept) == wanted);
+        Ok(())
     }
 
     /// Two cells of one name would be one row twice.
@@ -222,36 +246,6 @@ impl Plan {
         Ok(())
     }
 
-    /// Fixes each cell's samples and blocks.
-    fn allot(&mut self, overrides: &Overrides) {
-        let claims = &self.spec.claim;
-        let asked: Vec<(&Limits, f64)> = (claims.iter())
-            .filter_map(|claim| {
-                Some((claim.unbiased()?, claim.alpha() / stakes::questions(self, claim) as f64))
-            })
-            .collect();
-        for cell in &mut self.cells {
-            let limits = asked.iter().find(|(limits, _)| limits.covers(&cell.scene_label));
-            match (overrides.samples, self.spec.max_samples, limits) {
-                (Some(samples), _, _) => cell.samples = samples,
-                (None, Some(most), Some((limits, level))) if most > cell.samples => {
-                    let wanted = wanted_samples(cell, limits.margin, *level, None);
-                    cell.samples = wanted.map_or(cell.samples, |n| n.clamp(cell.samples, most));
-                }
-                _ => {}
-            }
-            if overrides.quick {
-                cell.samples = (cell.samples / 100).max(2);
-            }
-            // many blocks, or the t quantile is large; two passes at least, whose difference shows a pixel's variance
-            cell.runs = u64::from(self.spec.seeds.unwrap_or(1));
-            let blocks = if self.spec.seeds.is_some() { study::BLOCKS } else { MIN_BLOCKS };
-            cell.block = (cell.samples / blocks).min(BLOCK_PATHS / cell.pixels).max(2);
-            // whole blocks only, and two of them at least, or there is no standard error
-            cell.samples = cell.samples.div_ceil(cell.block).max(2) * cell.block;
-        }
-    }
-
     fn proportionate(&self, cell: &CellPlan, force: bool) -> Result<(), Error> {
         let label = self.label(cell);
         let one = cell.rays / cell.pixels as f64;
@@ -281,28 +275,4 @@ fn rule_label(cell: &CellPlan, swept: &[String]) -> String {
     let swept = cell.params.iter().filter(|(name, _)| swept.contains(name));
     let params: String = swept.map(|(name, value)| format!(" {name}={value}")).collect();
     format!("{}{params}", cell.roulette_label)
-}
-
-/// Realizations after which a cell is shown to be within the relative margin in each channel, where each question has
-/// `level`: by theory's mean and variance, or where theory knows none by those that were `measured`.
-pub fn wanted_samples(cell: &CellPlan, margin: f64, level: f64, measured: Option<&Channels>) -> Option<u64> {
-    const POWER: f64 = 0.999;
-    let closed = ClosedForm::of(&cell.scene, &cell.estimator);
-    let of_sample = |c: usize| measured.and_then(|m| Some((m[c].mean, m[c].variance()?)));
-    let by_theory = |c: usize| {
-        let closed = closed.as_ref()?;
-        Some((closed.truth(c, Counted::All), closed.central(c, Counted::All, 2).value()?))
-    };
-    let infinite = |c: usize| {
-        closed.as_ref().is_some_and(|closed| closed.central(c, Counted::All, 2) == Known::Infinite)
-    };
-    let needed = |c: usize| {
-        let (mean, variance) = by_theory(c).or_else(|| of_sample(c).filter(|_| !infinite(c)))?;
-        let margin = margin * mean;
-        let samples = stakes::samples(cell, None, c, variance);
-        // a t test shares its level among its looks
-        let looks = if cell.may_stop && samples.bets.is_none() { f64::from(LOOKS_IN_ALL) } else { 1.0 };
-        (margin > 0.0).then(|| samples.needed(margin, level / looks, POWER))
-    };
-    (0..3).filter_map(needed).reduce(f64::max).map(|n| n.ceil() as u64)
 }

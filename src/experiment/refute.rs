@@ -63,6 +63,7 @@ pub(super) fn answer(claims: &[Claim], rows: &mut [Row], suspicions: &[Suspicion
         let p: Vec<f64> = family.iter().map(|s| s.p).collect();
         for (suspicion, refuted) in family.iter().zip(holm(&p, claim.alpha())) {
             let row = &mut rows[suspicion.row];
+            row.claim = Some(index);
             row.p_value = Some(suspicion.p);
             row.engine = Some(suspicion.engine);
             let (p, what) = (suspicion.p, row.estimand.promise());

@@ -122,6 +122,8 @@ pub struct Row {
     pub e_value: Option<f64>,
     /// Smallest deviation that would have been found with 90 % power.
     pub mde: Option<f64>,
+    /// The claim, by its index, under which something was asked.
+    pub claim: Option<usize>,
     /// What the verdict rests on.
     pub engine: Option<Engine>,
     /// Realizations after which the verdict was certain, if that was before the last one.
@@ -159,6 +161,7 @@ impl Row {
             p_value: None,
             e_value: None,
             mde: None,
+            claim: None,
             engine: None,
             needed: None,
             verdict: None,

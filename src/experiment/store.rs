@@ -94,7 +94,7 @@ impl Store {
     }
 }
 
-/// The cells stored in `folder`, if they belong to `plan`, which learns the seed and samples of their run.
+/// The cells stored in `folder`, if they belong to `plan`, which learns the seed, samples and blocks of their run.
 pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
     let path = folder.join(CELLS);
     let text = fs::read_to_string(&path).map_err(|e| Error::io("cannot read", &path, e))?;
@@ -113,7 +113,11 @@ pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
         )));
     }
     plan.spec.seed = stored.seed;
-    plan.cells.iter_mut().zip(&stored.samples).for_each(|(cell, &samples)| cell.samples = samples);
+    for (cell, (&samples, kept)) in plan.cells.iter_mut().zip(stored.samples.iter().zip(&stored.cells)) {
+        cell.samples = samples;
+        let block = kept.as_ref().and_then(|kept| kept.cost.n.checked_div(kept.blocks[0].n));
+        cell.block = block.unwrap_or(cell.block);
+    }
     Ok(stored)
 }
 

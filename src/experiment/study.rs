@@ -159,7 +159,7 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
     let mut cell_plan = plan.cells[index].clone();
     cell_plan.address = cell_plan.address.repetition(seed);
     cell_plan.may_stop = true;
-    let alone = Plan { cells: vec![cell_plan], ..plan.clone() };
+    let alone = Plan { cells: vec![cell_plan], whole: None, ..plan.clone() };
     let cell_plan = &alone.cells[0];
     // looked at on the way, to learn when it was caught, but run to the end: other rules know no early end
     let look = |cell: &mut Cell| {
@@ -187,7 +187,7 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
 
 /// Samples after which bets on the whole had won enough.
 fn by_bets(plan: &Plan, cell: &Cell) -> Option<u64> {
-    let claim = plan.spec.claim.iter().find(|claim| claim.unbiased().is_some())?;
+    let claim = plan.spec.claim.iter().position(|claim| claim.unbiased().is_some())?;
     // two sides share the level
     let enough = -libm::log(0.5 * verdict::level(plan, claim));
     let won = |(above, below): &(f64, Option<f64>)| above.max(below.unwrap_or(0.0)) >= enough;

@@ -7,7 +7,6 @@ use super::plan::Plan;
 use super::refute::{self, Suspicion};
 use super::row::{Estimand, Row};
 use super::spec::{Claim, Limits};
-use super::stakes;
 use super::subject::Subject;
 use crate::stats::{Answer, Engine, Question, Verdict, decide, judge, student};
 
@@ -53,7 +52,7 @@ fn of_cell(plan: &Plan, index: usize, cell: &Cell, found: &mut Found) {
     let truth = plan.truth(cell_plan);
     let subject = Subject { index, plan: cell_plan, cell, truth: &truth };
     let claims = &plan.spec.claim;
-    let levels = claims.iter().map(|claim| level(plan, claim)).collect();
+    let levels = (0..claims.len()).map(|claim| level(plan, claim)).collect();
     let Found { rows, asked, suspicions } = found;
     let mut sheet = Sheet { scene: &cell_plan.scene_label, claims, levels, rows, asked, suspicions };
     subject.means(&mut sheet);
@@ -62,9 +61,9 @@ fn of_cell(plan: &Plan, index: usize, cell: &Cell, found: &mut Found) {
     subject.process(&mut sheet);
 }
 
-/// Level that each question of a claim has at least, before it is known how many will be asked.
-pub fn level(plan: &Plan, claim: &Claim) -> f64 {
-    claim.alpha() / stakes::questions(plan, claim) as f64
+/// Level that each question of a claim, by its index, has at least, before it is known how many will be asked.
+pub fn level(plan: &Plan, claim: usize) -> f64 {
+    plan.spec.claim[claim].alpha() / plan.questions(claim) as f64
 }
 
 /// Whether all that is asked about a cell is decided by the samples that it has so far. Writes into it what is.
@@ -85,7 +84,7 @@ pub fn is_decided(plan: &Plan, index: usize, cell: &mut Cell) -> bool {
         if known {
             continue;
         }
-        match decide(question, level(plan, &plan.spec.claim[*claim])) {
+        match decide(question, level(plan, *claim)) {
             Verdict::Inconclusive => all &= foreseen.is_some() && estimand != Estimand::Mean,
             verdict => cell.decided.push(Decided { estimand, channel, verdict, samples }),
         }
@@ -101,6 +100,7 @@ fn answer(plan: &Plan, cells: &[Option<Cell>], rows: &mut [Row], asked: Vec<Aske
         let level = claim.alpha() / family.len() as f64;
         for (asked, answer) in family.iter().zip(judge(&questions, claim.alpha())) {
             let row = &mut rows[asked.row];
+            row.claim = Some(index);
             take(row, answer);
             let decided = cells[row.cell].iter().flat_map(|cell| &cell.decided);
             let same = |d: &&Decided| (d.estimand, d.channel) == (row.estimand, row.channel);

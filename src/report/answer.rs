@@ -2,7 +2,7 @@
 //! and whether the claims hold.
 
 use super::lookup::Lookup;
-use super::{compare, family, number};
+use super::{compare, family, mistakes, number};
 use crate::experiment::row::CHANNELS;
 use crate::experiment::spec::Claim;
 use crate::experiment::{CellPlan, Estimand, Row};
@@ -33,15 +33,16 @@ pub fn sentences(lookup: &Lookup<'_>) -> Vec<String> {
     sentences.extend(families.iter().filter_map(|family| compare::gain(lookup, family)));
     sentences.extend(families.iter().flat_map(|family| compare::missed(lookup, family)));
     sentences.extend(truths(lookup));
-    sentences.push(claims(lookup));
+    sentences.extend(mistakes::sentences(lookup));
+    sentences.extend(claims(lookup));
     sentences
 }
 
-/// Finished cells, grouped by what `alike` says.
+/// Finished cells without a known mistake, grouped by what `alike` says.
 fn groups(lookup: &Lookup<'_>, alike: impl Fn(&CellPlan, &CellPlan) -> bool) -> Vec<Vec<usize>> {
     let cells = &lookup.plan.cells;
     let mut groups: Vec<Vec<usize>> = Vec::new();
-    for i in (0..cells.len()).filter(|&i| !lookup.cell(i).is_empty()) {
+    for i in sound(lookup).filter(|&i| !lookup.cell(i).is_empty()) {
         match groups.iter_mut().find(|group| alike(&cells[group[0]], &cells[i])) {
             Some(group) => group.push(i),
             None => groups.push(vec![i]),
@@ -140,9 +141,14 @@ struct Asked<'a> {
     open: Vec<&'a str>,
 }
 
-/// All judged questions by the source of their truth.
+/// Cells without a known mistake.
+fn sound(lookup: &Lookup<'_>) -> impl Iterator<Item = usize> {
+    (0..lookup.plan.cells.len()).filter(|&c| !lookup.is_faulty(c))
+}
+
+/// All judged questions about sound cells by the source of their truth.
 fn by_source<'a>(lookup: &Lookup<'a>) -> Vec<Asked<'a>> {
-    let rows = (0..lookup.plan.cells.len()).flat_map(|c| lookup.cell(c).iter().copied());
+    let rows = sound(lookup).flat_map(|c| lookup.cell(c).iter().copied());
     let mut sources: Vec<Asked<'a>> = Vec::new();
     for row in rows.filter(|row| row.verdict.is_some() && !row.source.is_empty()) {
         let scene = lookup.plan.cells[row.cell].scene_label.as_str();
@@ -182,14 +188,16 @@ fn source_name(source: &str) -> &str {
     }
 }
 
-fn claims(lookup: &Lookup<'_>) -> String {
+fn claims(lookup: &Lookup<'_>) -> Option<String> {
     let plan = lookup.plan;
-    let rows: Vec<&Row> = (0..plan.cells.len()).flat_map(|c| lookup.cell(c).iter().copied()).collect();
+    let rows: Vec<&Row> = sound(lookup).flat_map(|c| lookup.cell(c).iter().copied()).collect();
     let count = |verdict| rows.iter().filter(|r| r.verdict == Some(verdict)).count();
     let judged = rows.iter().filter(|r| r.verdict.is_some()).count();
+    let has_faults = plan.cells.iter().any(|cell| cell.fault.is_some());
     if judged == 0 {
-        return "Nothing was judged.".to_owned();
+        return (!has_faults).then(|| "Nothing was judged.".to_owned());
     }
+    let about = if has_faults { " about estimators without a mistake" } else { "" };
     let alpha: f64 = plan.spec.claim.iter().map(Claim::alpha).sum();
     let sources = by_source(lookup);
     let (against, open) = match sources.as_slice() {
@@ -200,12 +208,12 @@ fn claims(lookup: &Lookup<'_>) -> String {
         }
         _ => (String::new(), String::new()),
     };
-    format!(
-        "Of {judged} questions{against} {} passed, {} failed, {} stayed inconclusive and {} were invalid; were all well, \
+    Some(format!(
+        "Of {judged} questions{about}{against} {} passed, {} failed, {} stayed inconclusive and {} were invalid; were all well, \
          any false alarm among them had a probability of at most {alpha:.4}.{open}",
         count(Verdict::Pass),
         count(Verdict::Fail),
         count(Verdict::Inconclusive),
         count(Verdict::Invalid)
-    )
+    ))
 }

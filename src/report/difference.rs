@@ -107,7 +107,7 @@ pub fn map(pixels: &Pixels, reference: &Reference) -> Vec<u8> {
 }
 
 /// From blue at -1 over white to vermilion at 1: two colours that differ for every colour vision.
-fn colour(signed: f64) -> [u8; 3] {
+pub(super) fn colour(signed: f64) -> [u8; 3] {
     let full = if signed < 0.0 { Colour::Blue.rgb() } else { Colour::Vermilion.rgb() };
     let strength = signed.abs().min(1.0);
     [full.0, full.1, full.2].map(|c| (255.0 + (f64::from(c) - 255.0) * strength + 0.5) as u8)

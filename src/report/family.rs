@@ -4,7 +4,7 @@ use super::lookup::Lookup;
 use crate::scene::library::SceneKind;
 use crate::truth::gallery;
 
-/// Finished cells of one scene under one termination rule.
+/// Finished cells of one scene under one termination rule, without those that make a known mistake.
 pub struct Family {
     /// Indices of the cells.
     pub cells: Vec<usize>,
@@ -16,7 +16,7 @@ pub struct Family {
 pub fn families(lookup: &Lookup<'_>) -> Vec<Family> {
     let cells = &lookup.plan.cells;
     let mut families: Vec<Family> = Vec::new();
-    for i in (0..cells.len()).filter(|&i| !lookup.cell(i).is_empty()) {
+    for i in (0..cells.len()).filter(|&i| !lookup.cell(i).is_empty() && !lookup.is_faulty(i)) {
         let parameter = swept(lookup, i);
         let alike = |family: &&mut Family| {
             let first = &cells[family.cells[0]];

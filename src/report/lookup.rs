@@ -36,6 +36,11 @@ impl<'a> Lookup<'a> {
         worst.filter(|&worst| mean.is_some() || worst != Verdict::Pass)
     }
 
+    /// Whether the cell runs an estimator with a known mistake.
+    pub fn is_faulty(&self, cell: usize) -> bool {
+        self.plan.cells[cell].fault.is_some()
+    }
+
     /// Whether the cell has an image.
     pub fn is_image(&self, cell: usize) -> bool {
         self.plan.cells[cell].pixels > 1

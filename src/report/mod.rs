@@ -2,6 +2,7 @@
 
 pub mod answer;
 mod axes;
+mod budget;
 mod compare;
 mod curves;
 pub mod difference;
@@ -10,14 +11,19 @@ pub mod figure;
 mod forest;
 pub mod images;
 pub mod lookup;
+mod mistakes;
 pub mod mitsuba;
 mod number;
 mod page;
 pub mod plots;
+mod replay;
 pub mod study;
 mod summary;
 pub mod table;
+mod technique;
 pub mod terminal;
+mod tilemap;
+mod wrong;
 
 pub use lookup::Lookup;
 
@@ -37,7 +43,7 @@ pub fn write(
     images: Option<&Path>,
 ) -> Result<(), Error> {
     let lookup = Lookup::new(plan, rows);
-    store.write("results.csv", &table::results(plan, rows))?;
+    store.write("results.csv", &table::results(plan, cells, rows))?;
     let mut drawn = Vec::new();
     for plots::Named { name, figure } in plots::figures(&lookup) {
         let svg = figure::write(&figure, &store.path().join(&name)).map_err(|e| failed(store, &e))?;
@@ -48,7 +54,7 @@ pub fn write(
         Some(folder) => copy_images(plan, cells, store, folder)?,
     };
     let answer = answer::sentences(&lookup);
-    store.write("index.html", page::page(&lookup, &answer, &drawn, &pictures).as_bytes())
+    store.write("index.html", page::page(&lookup, cells, &answer, &drawn, &pictures).as_bytes())
 }
 
 fn failed(store: &Store, error: &dyn std::error::Error) -> Error {

@@ -20,6 +20,12 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// Three significant digits and a sign.
+pub fn signed(value: f64) -> String {
+    let text = short(value);
+    if value > 0.0 { format!("+{text}") } else { text }
+}
+
 /// "5.76 ± 0.05": to the error's first digit; three significant digits if there is no error.
 pub fn with_error(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {

@@ -1,14 +1,18 @@
-//! `index.html`: question, answer, verdicts, figures, images and numbers in one page that needs no network.
+//! `index.html`: question, answer, verdicts, what is wrong and where, figures, images and numbers in one page that needs no
+//! network.
+
+mod evidence;
+mod faults;
+mod numbers;
+mod places;
+mod trajectory;
+mod verdicts;
 
 use super::difference::FULL;
 use super::figure;
 use super::lookup::Lookup;
 use super::summary::{self, Line};
-use super::table;
-use crate::experiment::row::CHANNELS;
-use crate::experiment::spec::Claim;
-use crate::experiment::{Estimand, Row};
-use crate::stats::Verdict;
+use crate::experiment::Cell;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -34,7 +38,13 @@ pub struct Picture {
 }
 
 /// The whole page.
-pub fn page(lookup: &Lookup<'_>, answer: &[String], figures: &[Drawn], pictures: &[Picture]) -> String {
+pub fn page(
+    lookup: &Lookup<'_>,
+    cells: &[Option<Cell>],
+    answer: &[String],
+    figures: &[Drawn],
+    pictures: &[Picture],
+) -> String {
     let plan = lookup.plan;
     let finished: Vec<usize> = (0..plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty()).collect();
     let lines: Vec<Line> = finished.iter().map(|&c| summary::line(lookup, c)).collect();
@@ -60,113 +70,22 @@ pub fn page(lookup: &Lookup<'_>, answer: &[String], figures: &[Drawn], pictures:
                         }
                         ul { @for sentence in answer { li { (sentence) } } }
                     }
-                    section { h2 { "Verdicts" } (claims(lookup)) (verdicts(&lines)) }
+                    section { h2 { "Verdicts" } (verdicts::claims(lookup)) (verdicts::verdicts(&lines)) }
+                    (places::section(lookup))
+                    (faults::section(lookup))
                     @if !figures.is_empty() {
                         section { h2 { "Figures" } @for drawn in figures { (figure_block(drawn)) } }
                     }
                     @if !pictures.is_empty() {
                         section { h2 { "Images" } (gallery(pictures)) }
                     }
-                    section { h2 { "Numbers" } @for &cell in &finished { (numbers(lookup, cell)) } }
+                    section { h2 { "Numbers" } @for &cell in &finished { (numbers::numbers(lookup, cells, cell)) } }
                     section { h2 { "How to repeat this" } (provenance(lookup)) }
                 }
             }
         }
     }
     .into_string()
-}
-
-fn claims(lookup: &Lookup<'_>) -> Markup {
-    let about = |claim: &Claim| match claim {
-        Claim::Unbiased(l) => ("mean and each bounce", l.scene.clone(), Some(l.margin)),
-        Claim::Tiles(l) => ("means of the image's 4 × 4 tiles", l.scene.clone(), Some(l.margin)),
-        Claim::Variance(l) => ("variance", l.scene.clone(), Some(l.margin)),
-        Claim::Cost(l) => ("rays a sample", l.scene.clone(), Some(l.margin)),
-        Claim::Length(c) => ("lengths of paths", c.scene.clone(), None),
-        Claim::Independent(c) => ("independence of realizations", c.scene.clone(), None),
-        Claim::Agree { estimator, roulette, margin, .. } => {
-            ("mean, against another cell", Some(format!("{estimator}, {roulette}")), Some(*margin))
-        }
-    };
-    html! {
-        ul {
-            @for claim in &lookup.plan.spec.claim {
-                @let (what, scope, margin) = about(claim);
-                li {
-                    (what) @if let Some(scope) = scope { " (" (scope) ")" }
-                    @match asked(lookup, claim) {
-                        0 => ": nothing could be asked (the numbers below say why)",
-                        count => {
-                            ": " (count) " questions, "
-                            @match margin {
-                                Some(margin) => { "equivalent within " (100.0 * margin) " %" }
-                                None => "which can be refuted and never shown",
-                            }
-                            ", any false alarm with probability at most " (claim.alpha())
-                        }
-                    }
-                }
-            }
-        }
-        p {
-            "PASS: shown to lie within the margin. FAIL: shown to differ. INCONCLUSIVE: neither, with these samples. "
-            "INVALID: NaN, infinity, negative radiance or a runaway walk. No verdict: nothing is claimed, or the test's "
-            "conditions do not hold (the numbers below say why). All questions of a claim share its error probability by "
-            "Holm's method, which is a little sharper than the simultaneous intervals that are drawn. mde: the smallest bias "
-            "of the mean that would have been found with a probability of 90 %, in the worst channel. truth: its source "
-            "and its own error, standard error and bound added. One bias stands for three that read alike. efficiency: "
-            "1 / (variance × rays) in (W m⁻² sr⁻¹)⁻², variances of the channels added, in an image those of its pixels."
-        }
-    }
-}
-
-/// How many questions a claim led to.
-fn asked(lookup: &Lookup<'_>, claim: &Claim) -> usize {
-    let about = |row: &Row, scene: &str| match claim {
-        Claim::Unbiased(l) => matches!(row.estimand, Estimand::Mean | Estimand::Bounce(_)) && l.covers(scene),
-        Claim::Tiles(l) => matches!(row.estimand, Estimand::Tile(_)) && l.covers(scene),
-        Claim::Variance(l) => row.estimand == Estimand::Variance && l.covers(scene),
-        Claim::Cost(l) => row.estimand == Estimand::Cost && l.covers(scene),
-        Claim::Length(c) => row.estimand == Estimand::Length && covers(&c.scene, scene),
-        Claim::Independent(c) => {
-            matches!(row.estimand, Estimand::Repeats | Estimand::Serial) && covers(&c.scene, scene)
-        }
-        Claim::Agree { scene: of, .. } => row.estimand.is_agreement() && covers(of, scene),
-    };
-    let cells = lookup.plan.cells.iter().enumerate();
-    let rows = cells.flat_map(|(i, cell)| lookup.cell(i).iter().map(|row| (*row, cell.scene_label.as_str())));
-    rows.filter(|(row, scene)| row.engine.is_some() && about(row, scene)).count()
-}
-
-fn covers(only: &Option<String>, scene: &str) -> bool {
-    only.as_ref().is_none_or(|only| only == scene)
-}
-
-fn verdicts(lines: &[Line]) -> Markup {
-    html! {
-        div.wide { table {
-            thead { tr {
-                th { "scene" } th { "estimator" } th { "rule" } th { "verdict" } th.n { "bias [%] R G B" }
-                th.n { "mde [%]" } th { "truth" } th.n { "rays" } th.n { "efficiency" } th.n { "samples" }
-            } }
-            tbody { @for line in lines { tr {
-                td { (line.scene) } td { (line.estimator) } td { (line.rule) }
-                td { (badge(line.verdict)) @if !line.note.is_empty() { div.note { (line.note) } } }
-                td.n { (line.bias) } td.n { (line.mde) } td.truth { (line.truth) } td.n { (line.rays) }
-                td.n { (line.efficiency) } td.n { (line.samples) }
-            } } }
-        } }
-    }
-}
-
-fn badge(verdict: Option<Verdict>) -> Markup {
-    let class = match verdict {
-        Some(Verdict::Pass) => "pass",
-        Some(Verdict::Fail | Verdict::Invalid) => "fail",
-        Some(Verdict::Inconclusive) => "open",
-        None => "none",
-    };
-    html! { span class={ "badge " (class) } { @if let Some(v) = verdict { (v) } @else { "–" } } }
 }
 
 fn figure_block(drawn: &Drawn) -> Markup {
@@ -201,41 +120,6 @@ fn gallery(pictures: &[Picture]) -> Markup {
                 figcaption { (picture.label) " · " a href={ (picture.name) ".exr" } { "EXR" } }
             }
         } }
-    }
-}
-
-/// All rows of one cell, folded away.
-fn numbers(lookup: &Lookup<'_>, cell: usize) -> Markup {
-    html! {
-        details {
-            summary { (lookup.plan.label(&lookup.plan.cells[cell])) " " (badge(lookup.verdict(cell))) }
-            div.wide { table {
-                thead { tr {
-                    th { "estimand" } th { "channel" } th.n { "measured" } th.n { "std. error" } th.n { "right" }
-                    th.n { "its std. error" } th.n { "its bound" } th.n { "expected bias" } th.n { "bias" } th.n { "interval of the bias" } th.n { "p" }
-                    th.n { "smallest bias found" } th { "verdict" } th { "source, note" }
-                } }
-                tbody { @for row in lookup.cell(cell) { (number_row(row)) } }
-            } }
-        }
-    }
-}
-
-fn number_row(row: &Row) -> Markup {
-    let n = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:.6}"));
-    let small = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:.2e}"));
-    let index = row.estimand.index().map_or_else(String::new, |i| table::index(row.estimand, i));
-    let precise = !matches!(row.estimand, Estimand::Zeros);
-    html! {
-        tr {
-            td { (row.estimand) " " (index) } td { @if let Some(c) = row.channel { (CHANNELS[c]) } }
-            td.n { (n(Some(row.mean))) } td.n { (small(row.std_error)) } td.n { (n(row.truth)) }
-            td.n { (small(row.truth_error)) } td.n { (small(row.truth_bound)) }
-            td.n { (small(row.expected_bias)) } td.n { (small(row.bias)) }
-            td.n { @if let Some((low, high)) = row.ci { (format!("{low:+.2e} … {high:+.2e}")) } }
-            td.n { (small(row.p_value)) } td.n { (small(row.mde)) }
-            td { @if precise { (badge(row.verdict)) } } td { (row.source) " " (row.note) }
-        }
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::lookup::Lookup;
 use super::number;
+use super::{budget, mistakes};
 use crate::experiment::row::CHANNELS;
 use crate::experiment::{Estimand, Row};
-use crate::stats::Verdict;
+use crate::stats::{Engine, Verdict};
 
 /// What the table says of a cell.
 pub struct Line {
@@ -28,6 +29,10 @@ pub struct Line {
     pub truth: String,
     /// The worst verdict.
     pub verdict: Option<Verdict>,
+    /// What decided the questions with that verdict, and how many each.
+    pub by: Vec<(Engine, usize)>,
+    /// Realizations after which all was decided, if that was before the last.
+    pub needed: Option<u64>,
     /// What else to know.
     pub note: String,
 }
@@ -56,7 +61,27 @@ pub fn line(lookup: &Lookup<'_>, cell: usize) -> Line {
         efficiency: efficiency.map_or_else(|| "-".to_owned(), |(value, _)| number::short(value)),
         truth: truth(&means),
         verdict: lookup.verdict(cell),
+        by: by(lookup, cell),
+        needed: means.first().map(|row| row.samples).filter(|&taken| taken < plan.samples),
         note: note(lookup, cell, &means),
+    }
+}
+
+/// What the verdict of a cell rests on.
+fn by(lookup: &Lookup<'_>, cell: usize) -> Vec<(Engine, usize)> {
+    let Some(verdict) = lookup.verdict(cell) else { return Vec::new() };
+    let rows = lookup.cell(cell).iter().filter(|row| row.estimand != Estimand::Wrong);
+    let engines: Vec<Engine> =
+        rows.filter(|row| row.verdict == Some(verdict)).filter_map(|row| row.engine).collect();
+    let counted = |engine: Engine| (engine, engines.iter().filter(|&&e| e == engine).count());
+    budget::ENGINES.map(counted).into_iter().filter(|(_, count)| *count > 0).collect()
+}
+
+/// "exact", or "27 exact, 4 asymptotic".
+pub fn by_text(by: &[(Engine, usize)]) -> String {
+    match by {
+        [(engine, _)] => engine.to_string(),
+        several => several.iter().map(|(e, count)| format!("{count} {e}")).collect::<Vec<_>>().join(", "),
     }
 }
 
@@ -87,6 +112,9 @@ fn truth(means: &[&Row]) -> String {
 
 /// Why a channel was not judged, or the first thing that is not well.
 fn note(lookup: &Lookup<'_>, cell: usize, means: &[&Row]) -> String {
+    if let Some(note) = mistakes::note(lookup, cell) {
+        return note;
+    }
     let rows = lookup.cell(cell);
     let worst = lookup.verdict(cell).filter(|&v| v != Verdict::Pass);
     if let Some(row) = worst.and_then(|worst| rows.iter().find(|r| r.verdict == Some(worst))) {

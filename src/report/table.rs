@@ -4,9 +4,10 @@
 use crate::estimator::BINS;
 use crate::experiment::row::CHANNELS;
 use crate::experiment::{Cell, Estimand, Plan, Row};
+use crate::stats::tails::Light;
 
 /// The text of `results.csv`.
-pub fn results(plan: &Plan, rows: &[Row]) -> Vec<u8> {
+pub fn results(plan: &Plan, cells: &[Option<Cell>], rows: &[Row]) -> Vec<u8> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     let fixed = ["experiment", "scene", "estimator", "roulette"];
     let measured = [
@@ -34,18 +35,21 @@ pub fn results(plan: &Plan, rows: &[Row]) -> Vec<u8> {
         "rays_per_sample",
         "efficiency",
         "efficiency_error",
+        "guard",
+        "guard_note",
         "note",
     ];
     let swept = plan.swept.iter().map(String::as_str);
     csv.write_record(fixed.into_iter().chain(swept).chain(measured)).expect("a Vec takes all");
     for row in rows {
-        csv.write_record(record(plan, row)).expect("a Vec takes all");
+        csv.write_record(record(plan, cells[row.cell].as_ref(), row)).expect("a Vec takes all");
     }
     csv.into_inner().expect("a Vec takes all")
 }
 
-fn record(plan: &Plan, row: &Row) -> Vec<String> {
+fn record(plan: &Plan, measured: Option<&Cell>, row: &Row) -> Vec<String> {
     let cell = &plan.cells[row.cell];
+    let guard = guard(measured, row);
     let mut record = vec![
         plan.name.clone(),
         cell.scene_label.clone(),
@@ -78,9 +82,17 @@ fn record(plan: &Plan, row: &Row) -> Vec<String> {
         number(row.rays),
         number(row.efficiency),
         number(row.efficiency_error),
+        guard.as_ref().map_or_else(String::new, |(light, _)| light.to_string()),
+        guard.map_or_else(String::new, |(_, why)| why),
         row.note.clone(),
     ]);
     record
+}
+
+/// Whether mean and variance can be trusted, and why, for rows of the mean.
+fn guard(cell: Option<&Cell>, row: &Row) -> Option<(Light, String)> {
+    let channel = row.channel.filter(|_| row.estimand == Estimand::Mean)?;
+    Some(cell?.tails[channel].guard())
 }
 
 /// "3", or "8+" for the bin of all later bounces; a tile's number.

@@ -72,6 +72,20 @@ pub fn e_bh(e: &[f64], q: f64) -> Vec<bool> {
     first(&order, count, e.len())
 }
 
+/// Which hypotheses with p-values `p` the step-up procedure of Benjamini & Hochberg (1995) rejects: the k smallest, for
+/// the largest k with `p_(k) <= k q / m`.
+///
+/// The expected share of false ones among the rejected is `q` times the share of true hypotheses at most, if the tests
+/// are independent or positively dependent (Benjamini & Yekutieli 2001); [`e_bh`] needs no such condition. A NaN counts
+/// as a member but is never rejected; a `q` that is NaN or negative rejects nothing.
+pub fn bh(p: &[f64], q: f64) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..p.len()).filter(|&i| !p[i].is_nan()).collect();
+    order.sort_by(|&i, &j| p[i].total_cmp(&p[j]));
+    let reaches = |&k: &usize| p[order[k - 1]] <= k as f64 * q / p.len() as f64;
+    let count = (1..=order.len()).rev().find(reaches).unwrap_or(0);
+    first(&order, count, p.len())
+}
+
 /// Indices of all but the NaN, largest value first.
 fn descending(e: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..e.len()).filter(|&i| !e[i].is_nan()).collect();
@@ -129,6 +143,40 @@ mod tests {
         assert_eq!(e_bh(&[14.0, 1.0, 14.0, 14.0], 0.1), [true, false, true, true]);
         assert_eq!(e_bh(&[13.0, f64::NAN, 13.0, 13.0], 0.1), [false; 4]);
         assert_eq!(e_bh(&[f64::INFINITY, f64::NAN], 0.0), [true, false]);
+    }
+
+    #[test]
+    fn the_largest_that_passes_decides_for_all_below() {
+        // 0.0125, 0.025, 0.0375, 0.05: statsmodels' multipletests(method="fdr_bh")
+        assert_eq!(bh(&[0.036, 0.03, 0.9, 0.028], 0.05), [true, true, false, true]);
+        assert_eq!(bh(&[0.038, 0.03, 0.9, 0.028], 0.05), [false; 4]);
+        assert_eq!(bh(&[f64::NAN, 0.02, -f64::NAN, 0.02], 0.05), [false, true, false, true]);
+        assert_eq!(bh(&[f64::NAN, 0.026, -f64::NAN, 0.026], 0.05), [false; 4]);
+        assert_eq!(bh(&[0.0, 1.0], 0.0), [true, false]);
+        assert!(bh(&[], 0.05).is_empty() && bh(&[0.0], f64::NAN) == [false] && bh(&[0.0], -0.1) == [false]);
+    }
+
+    #[test]
+    fn bh_keeps_the_rate_of_false_discoveries_of_independent_tests() {
+        const RUNS: usize = 4000;
+        let rate = |scale: f64| {
+            let (mut source, mut wrong, mut found) = (Source(7), 0.0, 0);
+            for _ in 0..RUNS {
+                let p =
+                    (0..50).map(|i| scale * if i < 10 { 1e-3 * source.uniform() } else { source.uniform() });
+                let rejected = bh(&p.collect::<Vec<f64>>(), 0.1);
+                let [right, false_ones] =
+                    [&rejected[..10], &rejected[10..]].map(|part| part.iter().filter(|&&r| r).count());
+                wrong += false_ones as f64 / (right + false_ones).max(1) as f64;
+                found += right;
+            }
+            (wrong / RUNS as f64, found as f64 / (10 * RUNS) as f64)
+        };
+        // 40 of 50 are true
+        let (wrong, found) = rate(1.0);
+        assert!((0.07..0.09).contains(&wrong) && found > 0.9, "{wrong} {found}");
+        // what is no p-value is noticed
+        assert!(rate(0.1).0 > 0.2);
     }
 
     #[test]

@@ -156,6 +156,10 @@ pub struct Options {
     /// Only cells whose label contains TEXT
     #[arg(long, value_name = "TEXT", global = true)]
     pub filter: Option<String>,
+    /// Only the cell with this label, with the samples that it has in the whole experiment; fewer questions then share the
+    /// error probabilities, so that verdicts can be sharper
+    #[arg(long, value_name = "LABEL", global = true, allow_hyphen_values = true, conflicts_with = "filter")]
+    pub only: Option<String>,
     /// Change a value of the file: --set seed=7, --set grid.0.samples=100
     #[arg(long, value_name = "PATH=VALUE", global = true)]
     pub set: Vec<String>,

@@ -50,6 +50,7 @@ impl Source {
             seed: options.seed,
             samples: options.samples,
             filter: options.filter.clone(),
+            only: options.only.clone(),
             quick: options.quick,
             force: options.force,
         };

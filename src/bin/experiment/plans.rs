@@ -3,7 +3,8 @@
 use crate::HELD;
 use crate::args::Options;
 use crate::files::{self, Source};
-use furnace::experiment::plan::{RAYS_PER_SECOND, wanted_samples};
+use furnace::experiment::allot::wanted_samples;
+use furnace::experiment::plan::RAYS_PER_SECOND;
 use furnace::experiment::store::{self, Stored};
 use furnace::experiment::verdict::level;
 use furnace::experiment::{CellPlan, Error, Plan};
@@ -41,8 +42,9 @@ fn needed(
     let about = |claim: &&furnace::experiment::spec::Claim| {
         claim.unbiased().is_some_and(|l| l.covers(&cell.scene_label))
     };
-    let Some(claim) = plan.spec.claim.iter().find(about) else { return String::new() };
-    let Some(margin) = margin.or(claim.unbiased().map(|limits| limits.margin)) else { return String::new() };
+    let Some(claim) = plan.spec.claim.iter().position(|claim| about(&claim)) else { return String::new() };
+    let limits = plan.spec.claim[claim].unbiased();
+    let Some(margin) = margin.or(limits.map(|limits| limits.margin)) else { return String::new() };
     let measured = stored.and_then(|s| s.cells.get(index)?.as_ref()).map(|cell| &cell.total);
     let percent = 100.0 * margin;
     match wanted_samples(cell, margin, level(plan, claim), measured) {
