@@ -29,7 +29,11 @@ impl Subject<'_> {
             let unfit = self.cell.tails[channel].guard();
             let unfit = (unfit.0 == Light::Red).then_some(unfit.1);
             let foreseen = unfit.clone();
-            sheet.ask_in_vain(claim, Question { noise_free, skewness, unfit, ..question }, foreseen);
+            sheet.ask_in_vain(
+                claim,
+                Question { noise_free, skewness, unfit, looks: self.looks(), ..question },
+                foreseen,
+            );
         }
     }
 }

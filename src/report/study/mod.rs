@@ -67,7 +67,7 @@ impl<'a> Studied<'a> {
             && self.missed(Instrument::Verdict).is_empty()
             && Instrument::ALL
                 .iter()
-                .filter(|i| !i.is_rival())
+                .filter(|i| !i.is_rival() && **i != Instrument::Student)
                 .all(|i| self.false_alarms(*i).is_none_or(|a| a.is_kept()))
     }
 
@@ -134,7 +134,7 @@ pub fn sentences(studied: &Studied<'_>) -> Vec<String> {
     for instrument in Instrument::ALL {
         if let Some(alarms) = studied.false_alarms(instrument) {
             let (low, high) = alarms.limits();
-            let promise = if instrument.is_rival() {
+            let promise = if instrument.is_rival() || instrument == Instrument::Student {
                 String::new()
             } else {
                 format!("; promised are at most {:.2e}", alarms.level)
