@@ -109,16 +109,18 @@ impl Alarms {
 pub fn sentences(studied: &Studied<'_>) -> Vec<String> {
     let mut sentences = Vec::new();
     let faults = studied.faults();
+    let seeds = u64::from(studied.plan.spec.seeds.unwrap_or(1));
     if !faults.is_empty() {
         let missed = studied.missed(Instrument::Verdict);
         let rest =
             if missed.is_empty() { String::new() } else { format!("; not found: {}", missed.join(", ")) };
         sentences.push(format!(
             "Of {} mistakes that have an effect, the bench finds {} in at least {:.0} % of runs in the scene that shows \
-             them best{rest}.",
+             them best{rest}. All of {seeds} runs exclude, with 99 % confidence, a true rate below {:.0} %.",
             faults.len(),
             faults.len() - missed.len(),
-            100.0 * FOUND
+            100.0 * FOUND,
+            100.0 * clopper_pearson(seeds, seeds, 0.99).0
         ));
         for instrument in Instrument::ALL.into_iter().filter(|i| i.is_rival() || *i == Instrument::Student) {
             let missed = studied.missed(instrument);
