@@ -4,9 +4,8 @@
 //! Bets keep their level everywhere, by far as a rule. No t test does so exactly; how near it comes, and where it does
 //! not, is told in `stats::calibrate`.
 
-use furnace::experiment::ledger::Stream;
+use furnace::stats::Engine;
 use furnace::stats::nulls::{Count, Instrument, Law, Rates, Setting, measure, measure_at, predicted};
-use furnace::stats::{Engine, Stake};
 use std::sync::atomic::AtomicBool;
 
 const LEVELS: [f64; 2] = [0.05, 1e-3];
@@ -132,14 +131,5 @@ fn biases_multiply_exactly() {
             let side = if bias > 0.0 { Instrument::StudentAbove } else { Instrument::StudentBelow };
             assert!(biased.count(side).rejected > 150, "{law} {bias}: {:?}", biased.count(side));
         }
-    }
-}
-
-/// What is measured here is how the bench bets.
-#[test]
-fn samples_are_averaged_as_the_bench_averages_them() {
-    for bound in [None, Some(2.0), Some(15.9), Some(16.0), Some(1e6)] {
-        let stake = Stake { scale: 1.0, bound };
-        assert_eq!(Stream { bin: None, channel: 0, stake }.per_bet(), stake.samples_per_bet());
     }
 }

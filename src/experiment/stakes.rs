@@ -67,7 +67,7 @@ fn may_stop(plan: &Plan, cell: &CellPlan) -> bool {
 /// What the samples of a cell are like, in one channel, for planning how many are needed.
 pub fn samples(cell: &CellPlan, bin: Option<usize>, channel: usize, variance: f64) -> Samples {
     let stream = cell.streams.iter().find(|s| (s.bin, s.channel) == (bin, channel));
-    let bets = stream.and_then(|s| Some((s.stake.bound? - s.stake.scale, s.per_bet())));
+    let bets = stream.and_then(|s| Some((s.stake.bound? - s.stake.scale, s.stake.samples_per_bet())));
     Samples { variance, bets }
 }
 

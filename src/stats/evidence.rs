@@ -99,7 +99,10 @@ fn test(q: &Question, sides: &Sides<'_>, level: f64) -> Evidence {
         p_different,
         p_outside: if room > 0.0 { reaches_in } else { 1.0 },
         ci: (low, high),
-        mde: reach(half, POWER) * se + systematic,
+        mde: above
+            .detectable(expected, se, half, POWER, true)
+            .max(below.detectable(expected, se, half, POWER, false))
+            + systematic,
         e_value: e_value(q, sides),
         engine: if sides.are_exact() { Engine::Exact } else { Engine::Asymptotic },
         // both one-sided tests must reject: each may miss half as often

@@ -2,7 +2,7 @@
 //! Student's t, corrected for skewness.
 
 use super::bets::Bets;
-use super::power::reach;
+use super::power::{Samples, reach};
 use super::question::{Engine, Question};
 use super::skewed;
 use super::student::{one_sided_p, upper_quantile, welch_df};
@@ -113,6 +113,16 @@ impl Side<'_> {
             Side::Asymptotic(t) => t.reaching(-upper_quantile(level / t.looks, t.df)),
             Side::Unfit => f64::INFINITY,
         }
+    }
+
+    /// The smallest difference from `expected` that has a p-value of `level` with probability `power`, where the mean has
+    /// the standard error `error`.
+    pub(super) fn detectable(&self, expected: f64, error: f64, level: f64, power: f64, above: bool) -> f64 {
+        let Side::Exact(bets) = self else { return self.reach(level, power) * error };
+        let room = if above { Some(expected) } else { bets.stake.bound.map(|bound| bound - expected) };
+        let n = bets.n as f64;
+        let samples = Samples { variance: error * error * n, bets: room.map(|room| (room, 1)) };
+        samples.detectable(n, level, power)
     }
 
     /// How many standard errors a difference must have for a p-value of `level` with probability `power`.
