@@ -3,48 +3,36 @@
 use super::{FOUND, Studied, nulls, sentences};
 use crate::experiment::study::{Detection, Instrument};
 use crate::faults::Fault;
-use crate::report::page::style;
+use crate::report::page::frame;
 use crate::truth::Counted;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// The page of a study.
 pub fn page(studied: &Studied<'_>, interrupted: bool) -> String {
     let plan = studied.plan;
     let seeds = plan.spec.seeds.unwrap_or(1);
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "furnace: " (plan.name) }
-                style { (PreEscaped(style())) }
-            }
-            body {
-                header { h1 { (plan.name) } p.question { (plan.spec.question) } }
-                main {
-                    section {
-                        h2 { "Answer" }
-                        @if interrupted { p.warn { "Interrupted: some cells are missing." } }
-                        ul { @for sentence in sentences(studied) { li { (sentence) } } }
-                    }
-                    section { h2 { "Detections" } p { (legend(seeds)) } (matrix(studied)) }
-                    @if !studied.nulls.is_empty() {
-                        section { h2 { "Samples of known mean" } (nulls::table(studied.nulls)) }
-                    }
-                    (catalogue(studied))
-                    section {
-                        h2 { "How to repeat this" }
-                        pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) }
-                        p { a href="results.csv" { "results.csv" } ", " @if !studied.nulls.is_empty() { a href="nulls.csv" { "nulls.csv" } ", " }
-                            a href="timing.csv" { "timing.csv" } ", "
-                            a href="run.json" { "run.json" } "." }
-                    }
-                }
+    let main = html! {
+        section {
+            h2 { "Answer" }
+            @if interrupted { p.warn { "Interrupted: some cells are missing." } }
+            ul { @for sentence in sentences(studied) { li { (sentence) } } }
+        }
+        section { h2 { "Detections" } p { (legend(seeds)) } (matrix(studied)) }
+        @if !studied.nulls.is_empty() {
+            section { h2 { "Samples of known mean" } (nulls::table(studied.nulls)) }
+        }
+        (catalogue(studied))
+        section {
+            h2 { "How to repeat this" }
+            pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) }
+            p {
+                a href="results.csv" { "results.csv" } ", "
+                @if !studied.nulls.is_empty() { a href="nulls.csv" { "nulls.csv" } ", " }
+                a href="timing.csv" { "timing.csv" } ", " a href="run.json" { "run.json" } "."
             }
         }
-    }
-    .into_string()
+    };
+    frame(plan, &main)
 }
 
 fn legend(seeds: u32) -> String {
