@@ -3,7 +3,7 @@
 
 use super::lookup::Lookup;
 use super::tilemap::{self, TileMap};
-use super::{number, replay, table, technique};
+use super::{budget, number, replay, table, technique};
 use crate::estimator::BINS;
 use crate::experiment::row::CHANNELS;
 use crate::experiment::{Estimand, Row, mistake};
@@ -72,7 +72,7 @@ fn bounce(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
         if let Some(first) = first {
             let name = table::index(bounce(first), first);
             let failing = failing(&judged(first));
-            let before = before(first, |bin| judged(bin).iter().filter_map(|row| row.verdict).max());
+            let before = before(first, |bin| known(lookup, &judged(bin)));
             return Some(format!("First wrong bounce{against}: {name}, {}. {before}", deviations(&failing)));
         }
         let whole = failing(&rows(lookup, cell, *mean));
@@ -91,20 +91,47 @@ fn failing<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     rows.iter().filter(|row| row.verdict == Some(Verdict::Fail)).copied().collect()
 }
 
+/// What is known of a bounce that does not fail.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    Right,
+    /// Within the margin, and yet significantly different by itself.
+    Suspect,
+    Undecided,
+    Invalid,
+    Nothing,
+}
+
+/// The worst of the channels.
+fn known(lookup: &Lookup<'_>, rows: &[&Row]) -> Known {
+    let level = |row: &Row| Some(budget::shares(lookup).get(row.claim?)?.level());
+    let is_suspect = |row: &&Row| row.p_value.zip(level(row)).is_some_and(|(p, level)| p <= level);
+    match rows.iter().filter_map(|row| row.verdict).max() {
+        Some(Verdict::Pass) if rows.iter().any(is_suspect) => Known::Suspect,
+        Some(Verdict::Pass) => Known::Right,
+        Some(Verdict::Invalid) => Known::Invalid,
+        Some(_) => Known::Undecided,
+        None => Known::Nothing,
+    }
+}
+
 /// What is known of the bounces before the first wrong one.
-fn before(first: usize, verdict: impl Fn(usize) -> Option<Verdict>) -> String {
+fn before(first: usize, known: impl Fn(usize) -> Known) -> String {
     if first == 0 {
         return "There is none before it.".to_owned();
     }
-    let list = |of: Option<Verdict>| runs(&(0..first).filter(|&bin| verdict(bin) == of).collect::<Vec<_>>());
+    let told = |(of, what): (Known, &str)| {
+        let bins: Vec<usize> = (0..first).filter(|&bin| known(bin) == of).collect();
+        (!bins.is_empty()).then(|| format!("{} {what}", runs(&bins)))
+    };
     let parts = [
-        (list(Some(Verdict::Pass)), "shown to be right"),
-        (list(Some(Verdict::Inconclusive)), "undecided"),
-        (list(Some(Verdict::Invalid)), "invalid"),
-        (list(None), "not judged"),
+        (Known::Right, "shown to be right within the margin"),
+        (Known::Suspect, "within the margin, but significantly different"),
+        (Known::Undecided, "undecided"),
+        (Known::Invalid, "invalid"),
+        (Known::Nothing, "not judged"),
     ];
-    let parts: Vec<String> =
-        parts.iter().filter(|part| !part.0.is_empty()).map(|(bins, what)| format!("{bins} {what}")).collect();
+    let parts: Vec<String> = parts.into_iter().filter_map(told).collect();
     format!("Before it: {}.", parts.join("; "))
 }
 
