@@ -62,11 +62,12 @@ fn invalid(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
 
 /// The first bounce that fails, or that none does although the whole fails.
 fn bounce(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
-    let kinds: [(fn(usize) -> Estimand, Estimand, &str); 2] = [
+    type Kind = (fn(usize) -> Estimand, Estimand, &'static str);
+    let kinds: [Kind; 2] = [
         (Estimand::Bounce, Estimand::Mean, ""),
         (Estimand::AgreeBounce, Estimand::Agree, " (against another cell)"),
     ];
-    let of_kind = |(bounce, mean, against): &(fn(usize) -> Estimand, Estimand, &str)| {
+    let of_kind = |(bounce, mean, against): &Kind| {
         let judged = |bin: usize| rows(lookup, cell, bounce(bin));
         let first = (0..BINS).find(|&bin| judged(bin).iter().any(|row| row.verdict == Some(Verdict::Fail)));
         if let Some(first) = first {
