@@ -32,6 +32,11 @@
 //! | truth | the right value with its error: from a closed form, an independent renderer, or another kind of estimator |
 //! | reference | a stored image with standard errors |
 //! | claim, verdict | what is promised; Pass (shown equivalent), Fail (shown different), Inconclusive, Invalid |
+//! | bets, e-value | evidence that holds at any stopping time: a fortune that is unlikely to grow if all is right |
+//! | exact, asymptotic | decided by bets, or by a t test whose error probability holds for many samples |
+//! | guard | whether the largest samples leave a variance, and so a t test, any meaning |
+//! | fault | an estimator with a known mistake, made to be found |
+//! | study, instrument | cells run with many seeds; what looks for mistakes there |
 //! | cost, efficiency | rays a realization; 1 / (variance x cost) |
 
 #![deny(unsafe_code)]

@@ -57,6 +57,22 @@ const KEYS_AND_TYPES: [Case; 17] = [
     ("samples = 64 64", "64 64", "string values must be quoted"),
 ];
 
+/// What has to do with estimators that make mistakes.
+const FAULTS: [Case; 4] = [
+    (
+        "estimator = [{ fault = { name = \"roulette_off\" } }]",
+        "{ fault = { name = \"roulette_off\" } }",
+        "estimators with a mistake are for files that say `faults = true`",
+    ),
+    ("seeds = 0", "0", "a whole number from 1 to 10^9"),
+    ("claim = [{ length = { alpha = 1.5 } }]", "1.5", "it lies inside (0, 1)"),
+    (
+        "claim = [{ independent = { margin = 0.1 } }]",
+        "margin",
+        "unknown field `margin`, expected `scene` or `alpha`",
+    ),
+];
+
 const NUMBERS: [Case; 32] = [
     ("samples = 0", "0", "at least 1 sample is needed"),
     ("samples = -5", "-5", "at least 1 sample is needed"),
@@ -213,6 +229,11 @@ fn the_good_file_runs() {
     fs::write(place.path().join("experiments/x.toml"), GOOD).unwrap();
     let mut command = Command::new(cargo_bin!("experiment"));
     command.args(["plan", "x"]).current_dir(place.path()).assert().success().stderr("");
+}
+
+#[test]
+fn mistakes_are_only_for_those_who_ask() {
+    refused(&FAULTS);
 }
 
 #[test]

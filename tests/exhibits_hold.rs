@@ -75,7 +75,14 @@ fn all_of(names: &[&str]) {
 
 #[test]
 fn of_direct_light() {
-    all_of(&["disk_light", "polygon_light", "sphere_light", "unequal_lights", "hidden_light"]);
+    all_of(&[
+        "disk_light",
+        "polygon_light",
+        "sphere_light",
+        "unequal_lights",
+        "hidden_light",
+        "turned_light",
+    ]);
     // the ball cut by the horizon, its centre below; the plate's edge beyond the middle of the light
     for (name, parameter) in [("sphere_light", 0.15), ("sphere_light", -0.2), ("hidden_light", 0.4)] {
         holds(EXHIBITS.iter().find(|e| e.name == name).unwrap(), parameter);

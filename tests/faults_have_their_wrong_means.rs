@@ -33,6 +33,7 @@ fn scenes() -> Vec<SceneKind> {
         "metal_light",
         "clear_slab",
         "hidden_light",
+        "turned_light",
         "disk_light",
         "rising_light",
         "sky_over_plane",
@@ -121,7 +122,6 @@ fn faults_converge_to_their_wrong_means() {
     }
     let without = [
         "light_below_horizon",
-        "light_shines_backwards",
         "ray_meets_its_surface",
         "ray_offset_large",
         "sky_turned",

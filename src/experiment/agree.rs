@@ -28,7 +28,11 @@ pub(super) fn compare(plan: &Plan, cells: &[Option<Cell>], rows: &mut Vec<Row>, 
                     let (row, rare) = row(index, estimand, channel, cell, ours, theirs);
                     rows.push(row);
                     if !rare {
-                        let question = difference(ours, theirs, margin, invalid.clone());
+                        let pairs = paired(cell, anchor, channel).filter(|_| estimand == Estimand::Agree);
+                        let question = match pairs {
+                            Some(pairs) => Question::about(&pairs, invalid.clone(), 0.0, margin),
+                            None => difference(ours, theirs, margin, invalid.clone()),
+                        };
                         asked.push(Asked { claim, row: rows.len() - 1, question, foreseen: None });
                     }
                 }
@@ -75,6 +79,17 @@ pub(super) fn effective(blocks: &Moments) -> f64 {
         _ if blocks.mean != 0.0 => f64::INFINITY,
         _ => 0.0,
     }
+}
+
+/// Differences of blocks that had the same random numbers: what both share cancels.
+fn paired(ours: &Cell, theirs: &Cell, channel: usize) -> Option<Moments> {
+    let (ours, theirs) = (&ours.block_means, &theirs.block_means);
+    if ours.is_empty() || ours.len() != theirs.len() {
+        return None;
+    }
+    let mut differences = Moments::default();
+    ours.iter().zip(theirs).for_each(|(a, b)| differences.push(a[channel] - b[channel]));
+    (differences.m2 > 0.0).then_some(differences)
 }
 
 fn difference(ours: &Moments, theirs: &Moments, margin: f64, invalid: Option<String>) -> Question {

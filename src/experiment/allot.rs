@@ -1,11 +1,12 @@
 //! How many samples each cell gets, and in which blocks.
 
+use super::cell::Channels;
 use super::plan::{CellPlan, Overrides, Plan};
 use super::run::LOOKS_IN_ALL;
 use super::spec::Limits;
 use super::stakes;
 use super::study;
-use crate::truth::{ClosedForm, Counted};
+use crate::truth::{ClosedForm, Counted, Known};
 
 /// Paths a block, at most.
 const BLOCK_PATHS: u64 = 4096;
@@ -23,12 +24,14 @@ impl Plan {
             })
             .collect();
         let blocks = self.blocks();
+        let runs = u64::from(self.spec.seeds.unwrap_or(1));
         for cell in &mut self.cells {
+            cell.runs = runs;
             let limits = asked.iter().find(|(limits, _)| limits.covers(&cell.scene_label));
             match (overrides.samples, self.spec.max_samples, limits) {
                 (Some(samples), _, _) => cell.samples = samples,
                 (None, Some(most), Some((limits, level))) if most > cell.samples => {
-                    let wanted = wanted_samples(cell, limits.margin, *level);
+                    let wanted = wanted_samples(cell, limits.margin, *level, None);
                     cell.samples = wanted.map_or(cell.samples, |n| n.clamp(cell.samples, most));
                 }
                 _ => {}
@@ -61,15 +64,23 @@ fn whole_blocks(samples: u64, pixels: u64, blocks: u64) -> (u64, u64) {
     (samples.div_ceil(block).max(2) * block, block)
 }
 
-/// Realizations after which a cell is shown to be within the relative margin in each channel, by theory's variance, where
-/// each question has `level`; `None` where theory knows no variance.
-fn wanted_samples(cell: &CellPlan, margin: f64, level: f64) -> Option<u64> {
+/// Realizations after which a cell is shown to be within the relative margin in each channel, where each question has
+/// `level`: by theory's mean and variance, or where theory knows none by those that were `measured`.
+pub fn wanted_samples(cell: &CellPlan, margin: f64, level: f64, measured: Option<&Channels>) -> Option<u64> {
     const POWER: f64 = 0.999;
-    let closed = ClosedForm::of(&cell.scene, &cell.estimator)?;
-    let needed = |channel| {
-        let variance = closed.central(channel, Counted::All, 2).value()?;
-        let margin = margin * closed.truth(channel, Counted::All);
-        let samples = stakes::samples(cell, None, channel, variance);
+    let closed = ClosedForm::of(&cell.scene, &cell.estimator);
+    let of_sample = |c: usize| measured.and_then(|m| Some((m[c].mean, m[c].variance()?)));
+    let by_theory = |c: usize| {
+        let closed = closed.as_ref()?;
+        Some((closed.truth(c, Counted::All), closed.central(c, Counted::All, 2).value()?))
+    };
+    let infinite = |c: usize| {
+        closed.as_ref().is_some_and(|closed| closed.central(c, Counted::All, 2) == Known::Infinite)
+    };
+    let needed = |c: usize| {
+        let (mean, variance) = by_theory(c).or_else(|| of_sample(c).filter(|_| !infinite(c)))?;
+        let margin = margin * mean;
+        let samples = stakes::samples(cell, None, c, variance);
         // a t test shares its level among its looks
         let looks = if cell.may_stop && samples.bets.is_none() { f64::from(LOOKS_IN_ALL) } else { 1.0 };
         (margin > 0.0).then(|| samples.needed(margin, level / looks, POWER))

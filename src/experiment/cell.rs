@@ -153,6 +153,9 @@ pub struct Cell {
     pub decided: Vec<Decided>,
     /// Means of [`TILES`] x [`TILES`] tiles, row by row from the top left; empty if they do not divide the image.
     pub tiles: Vec<[Measured; 3]>,
+    /// Value of a realization, in each block; kept only where cells share their random numbers, for paired comparisons.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub block_means: Vec<[f64; 3]>,
     /// Pixel by pixel; empty for a probe. Kept as an image, not in the store.
     #[serde(skip)]
     pub pixels: Pixels,
@@ -201,6 +204,11 @@ pub struct Measured {
 }
 
 impl Cell {
+    /// Keeps the means of blocks, for comparisons with a cell that has the same random numbers.
+    pub fn keep_block_means(&mut self) {
+        self.block_means = self.parts.iter().map(|part| part.map(|m| m.mean)).collect();
+    }
+
     /// Looks at the blocks together and sums up the image, once all blocks are in.
     pub fn finish(&mut self) {
         self.repeats = replicates::repeats(&self.keys) as u64;

@@ -77,10 +77,12 @@ fn grid_cells(
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
                     samples: grid.samples.unwrap_or(spec.samples),
                     block: 0,
+                    runs: 1,
                     pixels: pixels(&built),
                     rays: rays(&scene.choice.value, &built, &whole),
                     finds_all: making::finds_all(&whole, &built),
                     address: address(spec, &scene.choice.value, &whole, fault),
+                    paired: spec.streams == Streams::Paired,
                     streams: Vec::new(),
                     may_stop: false,
                 });

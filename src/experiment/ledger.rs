@@ -2,6 +2,7 @@
 
 use crate::estimator::{BINS, Tally};
 use crate::scene::Rgb;
+use crate::stats::bets::PER_BET;
 use crate::stats::{Bets, Stake, Table};
 use serde::{Deserialize, Serialize};
 
@@ -14,22 +15,6 @@ pub struct Stream {
     pub channel: usize,
     /// The guess of its mean, and its bound.
     pub stake: Stake,
-}
-
-/// So many realizations are averaged before they are bet on, because a bet costs as much as a bounce. It loses no power
-/// for differences of a few percent of the mean: the shares of a fortune that are best for those are far below 1 [own].
-const PER_BET: u64 = 16;
-
-impl Stream {
-    /// Realizations that are averaged before they are bet on. Where a sample may be many times the mean, which can only
-    /// be if it seldom is, an average has the same bound but hides how seldom.
-    pub fn per_bet(&self) -> u64 {
-        if self.stake.bound.is_some_and(|bound| bound >= PER_BET as f64 * self.stake.scale) {
-            1
-        } else {
-            PER_BET
-        }
-    }
 }
 
 /// Paths of so many rays have a bin each; the last one holds all longer ones.
@@ -61,7 +46,7 @@ impl Ledger {
     pub fn new(streams: &[Stream]) -> Self {
         let (mut single, mut several) = (Sitting::default(), Sitting::default());
         for stream in streams {
-            let sitting = if stream.per_bet() == 1 { &mut single } else { &mut several };
+            let sitting = if stream.stake.samples_per_bet() == 1 { &mut single } else { &mut several };
             sitting.tables[stream.bin.unwrap_or(BINS)].push((*stream, Table::new(stream.stake)));
         }
         Ledger { single, several, waiting: 0, order: streams.to_vec(), lengths: [0; LENGTHS] }
@@ -89,7 +74,7 @@ impl Ledger {
             self.several.bet(1.0 / self.waiting as f64, BINS, tally, total);
         }
         let won = |stream: &Stream| {
-            let sitting = if stream.per_bet() == 1 { &self.single } else { &self.several };
+            let sitting = if stream.stake.samples_per_bet() == 1 { &self.single } else { &self.several };
             let tables = &sitting.tables[stream.bin.unwrap_or(BINS)];
             tables.iter().find(|(s, _)| s == stream).map(|(_, table)| table.close(sitting.bets))
         };

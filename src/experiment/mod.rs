@@ -1,7 +1,7 @@
 //! From an experiment file to verdicts: spec, plan, blocks, cells, rows.
 
 mod agree;
-mod allot;
+pub mod allot;
 pub mod cell;
 pub mod choices;
 pub mod error;

@@ -36,6 +36,8 @@ pub struct CellPlan {
     pub samples: u64,
     /// Realizations a block.
     pub block: u64,
+    /// How many times it is run, with a seed each.
+    pub runs: u64,
     /// Pixels of one realization.
     pub pixels: u64,
     /// Expected rays a realization: by theory, or an upper bound.
@@ -44,6 +46,8 @@ pub struct CellPlan {
     pub finds_all: bool,
     /// Where its random streams live.
     pub address: Address,
+    /// Whether it shares its random numbers with other cells of its scene.
+    pub paired: bool,
     /// What is bet on.
     pub streams: Vec<Stream>,
     /// Whether it may end before all samples are taken: nothing but claims about this cell alone wants them.
@@ -63,7 +67,7 @@ impl CellPlan {
 
     /// Expected rays of the whole cell.
     pub fn total_rays(&self) -> f64 {
-        self.rays * self.samples as f64
+        self.rays * (self.samples * self.runs) as f64
     }
 }
 

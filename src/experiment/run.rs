@@ -62,6 +62,9 @@ pub fn run_cell(
         }
     }
     cell.finish();
+    if plan.paired {
+        cell.keep_block_means();
+    }
     Some(cell)
 }
 

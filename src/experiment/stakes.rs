@@ -7,6 +7,7 @@ use super::plan::{CellPlan, Plan};
 use super::spec::Claim;
 use super::subject::counted;
 use crate::estimator::BINS;
+use crate::faults::Slip;
 use crate::scene::library::SceneKind;
 use crate::stats::Stake;
 use crate::stats::power::Samples;
@@ -48,7 +49,9 @@ fn stake(
     if steady {
         return None; // without noise there is nothing to win: values are compared
     }
-    let bound = bound::of(scene, &cell.estimator, channel, counted);
+    // photons are no paths, and a path's bound is none of theirs
+    let is_path = cell.fault.is_none_or(|fault| !matches!(fault.slip, Slip::Density(_)));
+    let bound = bound::of(scene, &cell.estimator, channel, counted).filter(|_| is_path);
     let stake = Stake { scale: expected.value, bound: bound.filter(|bound| *bound > expected.value) };
     stake.defect().is_none().then_some(stake)
 }
@@ -64,7 +67,7 @@ fn may_stop(plan: &Plan, cell: &CellPlan) -> bool {
 /// What the samples of a cell are like, in one channel, for planning how many are needed.
 pub fn samples(cell: &CellPlan, bin: Option<usize>, channel: usize, variance: f64) -> Samples {
     let stream = cell.streams.iter().find(|s| (s.bin, s.channel) == (bin, channel));
-    let bets = stream.and_then(|s| Some((s.stake.bound? - s.stake.scale, s.per_bet())));
+    let bets = stream.and_then(|s| Some((s.stake.bound? - s.stake.scale, s.stake.samples_per_bet())));
     Samples { variance, bets }
 }
 

@@ -159,7 +159,7 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
     let mut cell_plan = plan.cells[index].clone();
     cell_plan.address = cell_plan.address.repetition(seed);
     cell_plan.may_stop = true;
-    let alone = Plan { cells: vec![cell_plan], ..plan.clone() };
+    let alone = Plan { cells: vec![cell_plan], whole: None, ..plan.clone() };
     let cell_plan = &alone.cells[0];
     // looked at on the way, to learn when it was caught, but run to the end: other rules know no early end
     let look = |cell: &mut Cell| {
@@ -175,13 +175,23 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
     let [Some(cell)] = &cells else { return None };
     let bad = |v: Verdict| matches!(v, Verdict::Fail | Verdict::Invalid);
     let early = cell.decided.iter().filter(|d| bad(d.verdict) && d.estimand != Estimand::Wrong);
+    let early = early.map(|d| d.samples).chain(by_bets(&alone, cell)).min();
     let caught = mistake::is_caught(&rows.iter().collect::<Vec<_>>());
     Some(Trial {
         found: found(&alone, cell, &rows, caught),
-        needed: caught.then(|| early.map(|d| d.samples).min().unwrap_or(cell.cost.n)),
+        needed: caught.then(|| early.unwrap_or(cell.cost.n)),
         mean: cell.total.map(|m| m.mean),
         errors: errors(&alone, cell),
     })
+}
+
+/// Samples after which bets on the whole had won enough.
+fn by_bets(plan: &Plan, cell: &Cell) -> Option<u64> {
+    let claim = plan.spec.claim.iter().position(|claim| claim.unbiased().is_some())?;
+    // two sides share the level
+    let enough = -libm::log(0.5 * verdict::level(plan, claim));
+    let won = |(above, below): &(f64, Option<f64>)| above.max(below.unwrap_or(0.0)) >= enough;
+    cell.history.iter().find(|snapshot| snapshot.log_e.iter().any(won)).map(|snapshot| snapshot.total[0].n)
 }
 
 /// What each instrument says of one run.
@@ -229,8 +239,7 @@ fn student(plan: &Plan, cell: &Cell, right: [Option<f64>; 3]) -> Option<bool> {
         let (total, right) = (&cell.total[c], right[c]?);
         let noise_free = total.m2 == 0.0;
         let skewness = total.skewness().unwrap_or(0.0) / (total.n as f64).sqrt();
-        let question =
-            Question::about(total, cell.invalid(), right, 0.01 * right.abs().max(f64::MIN_POSITIVE));
+        let question = Question::about(total, cell.invalid(), right, f64::MIN_POSITIVE);
         Some(Question { noise_free, skewness, ..question })
     };
     let questions: Vec<Question> = (0..3).filter_map(question).collect();
@@ -256,7 +265,9 @@ fn welch(cell_plan: &CellPlan, cell: &Cell) -> Option<bool> {
 /// Errors of the mean at numbers of samples that double.
 fn errors(plan: &Plan, cell: &Cell) -> Vec<(f64, f64)> {
     let truth = plan.truth(&plan.cells[0]);
-    let Some(right) = truth.expected(1, Counted::All) else { return Vec::new() };
+    let Some(right) = truth.expected(1, Counted::All).filter(|_| cell.total[1].m2 > 0.0) else {
+        return Vec::new(); // nothing converges where nothing varies
+    };
     let doubled = |n: u64| (n / plan.cells[0].block).is_power_of_two();
     let snapshots = cell.history.iter().map(|snapshot| &snapshot.total[1]);
     snapshots.filter(|m| doubled(m.n)).map(|m| (m.n as f64, m.mean - right.value)).collect()

@@ -143,10 +143,15 @@ impl Subject<'_> {
             noise_free: variance == Known::Value(0.0),
             margin,
             bets: bets.cloned(),
-            looks: if self.plan.may_stop { LOOKS_IN_ALL } else { 1 },
+            looks: self.looks(),
             ..question
         };
         sheet.ask_in_vain(claim, question, foreseen);
+    }
+
+    /// How many times a t test about this cell is looked at: all that may end a cell is.
+    pub(super) fn looks(&self) -> u32 {
+        if self.plan.may_stop { LOOKS_IN_ALL } else { 1 }
     }
 
     /// What was won by betting on an estimand.
@@ -225,6 +230,7 @@ impl Subject<'_> {
         if let (Some((claim, margin)), Some(rays)) = (sheet.claim(Claim::cost), rays) {
             let mut question = Question::about(cost, self.cell.invalid(), rays, margin * rays);
             question.noise_free = self.truth.theory().is_some_and(|theory| theory.rays_are_certain());
+            question.looks = self.looks();
             sheet.ask(claim, question);
         }
         for channel in 0..3 {
@@ -254,7 +260,10 @@ impl Subject<'_> {
         if let (Some((claim, margin)), Some(std_error), true) = (claim, error, expected > 0.0) {
             let question = Question::about(&self.cell.total[channel], self.cell.invalid(), expected, 0.0);
             let (df, margin) = (f64::INFINITY, margin * expected);
-            sheet.ask(claim, Question { mean: variance, std_error, df, margin, ..question });
+            sheet.ask(
+                claim,
+                Question { mean: variance, std_error, df, margin, looks: self.looks(), ..question },
+            );
         }
     }
 

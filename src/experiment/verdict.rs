@@ -62,7 +62,7 @@ fn of_cell(plan: &Plan, index: usize, cell: &Cell, found: &mut Found) {
 }
 
 /// Level that each question of a claim, by its index, has at least, before it is known how many will be asked.
-fn level(plan: &Plan, claim: usize) -> f64 {
+pub fn level(plan: &Plan, claim: usize) -> f64 {
     plan.spec.claim[claim].alpha() / plan.questions(claim) as f64
 }
 

@@ -3,6 +3,7 @@
 use super::walk::{Path, Walk};
 use crate::estimator::Ctx;
 use crate::sampling::PdfW;
+use crate::scene::sky::SKY;
 use crate::scene::{Hit, LightSample};
 
 /// Mistakes in how two techniques are weighted.
@@ -12,7 +13,7 @@ pub enum Weighting {
     Scaled,
     /// A light without extent is weighted as if a direction could find it.
     PointShared,
-    /// At sampled lights the light's density is taken per area.
+    /// At sampled lights the light's density is taken per area; the sky has none.
     PerAreaOnce,
     /// It is taken per area in both places.
     PerArea,
@@ -46,7 +47,7 @@ impl Walk {
     pub fn light_weight(&self, x: &Hit<'_>, light: &LightSample, cos: f64, cos_at_light: f64) -> f64 {
         let pdf = match self.weighting() {
             Some(Weighting::PointShared) => light.pdf.or(Some(PdfW(light.pmf))),
-            Some(Weighting::PerArea | Weighting::PerAreaOnce) if cos_at_light > 0.0 => {
+            Some(Weighting::PerArea | Weighting::PerAreaOnce) if light.surface != SKY => {
                 let squared = light.distance * light.distance;
                 light.pdf.map(|pdf| PdfW(pdf.per_area(squared, cos_at_light).0))
             }

@@ -108,7 +108,7 @@ impl Estimate for Faulty {
     fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
         let walk = Walk::of(&self.estimator, self.fault.slip);
         match self.fault.slip {
-            Slip::Density(density) => photon::estimate(density, &ray, cx),
+            Slip::Density(density) => photon::estimate(density, &walk.roulette, &ray, cx),
             Slip::Averaging(averaging) => averaging::estimate(averaging, &walk, ray, cx),
             Slip::Scattering(Scattering::CoarseDropped) => walk.trace(ray, cx, &mut Record::Numbers),
             _ => walk.trace(ray, cx, &mut Record::Tally),

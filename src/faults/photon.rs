@@ -3,7 +3,7 @@
 //! Inside a sphere the part within chord distance r of a point has the area π r² exactly, and irradiance is uniform; so
 //! there, and only there, the estimate is unbiased whatever r is.
 
-use crate::estimator::Ctx;
+use crate::estimator::{Ctx, Roulette};
 use crate::sampling::warp::cosine_hemisphere;
 use crate::scene::{Hit, Ray, Rgb, Scene, Shape};
 use std::f64::consts::PI;
@@ -24,8 +24,8 @@ pub enum Density {
 /// Radius of the density estimate over the sphere's.
 const REACH: f64 = 0.35;
 
-/// Draws one sample.
-pub fn estimate(density: Density, ray: &Ray, cx: &mut Ctx<'_>) {
+/// Draws one sample. Photons survive by the albedo, whatever rule is claimed; its limit holds.
+pub fn estimate(density: Density, roulette: &Roulette, ray: &Ray, cx: &mut Ctx<'_>) {
     let Some(x) = cx.hit(ray) else { return };
     if density != Density::NoEmission {
         cx.add(0, x.le);
@@ -36,6 +36,9 @@ pub fn estimate(density: Density, ray: &Ray, cx: &mut Ctx<'_>) {
     let (mut bounce, mut found) = (0u32, Vec::new());
     while let Some(y) = cx.hit(&ray) {
         bounce += 1;
+        if !roulette.reaches(bounce) {
+            break;
+        }
         let near = |y: &Hit<'_>| (y.p - x.p).length() < reach && y.frame.n.dot(x.frame.n) > 0.0;
         if near(&y) {
             let extra = if density == Density::Cosine { y.frame.n.dot(y.wo) } else { 1.0 };

@@ -1,4 +1,7 @@
 //! Mistakes in continued directions.
+//!
+//! Where a weight has a factor 1 / cos it grows by e^(1/2) a bounce in the typical case. Roulette by throughput then lets
+//! go on for ever what walks among albedos above 0.6: such a walk runs away, and takes seconds to be cut.
 
 use super::slip::Slip;
 use super::walk::{Path, Walk};

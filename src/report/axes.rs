@@ -61,6 +61,7 @@ fn meaning(scene: &SceneKind, parameter: &str) -> Option<&'static str> {
         ("moving_edge", "way") => "way of the edge during the exposure  [pixels]",
         ("rising_light", "way") => "way of the light during the exposure  [m]",
         ("hidden_light", "edge") => "edge of the plate  [m]",
+        ("turned_light", "radius") => "radius of the turned light  [m]",
         ("sphere_light", "height") => "height of the ball's middle over the horizon  [m]",
         ("polygon_light" | "point_over_plane", "height") => "height of the light  [m]",
         _ => return None,

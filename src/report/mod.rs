@@ -17,6 +17,7 @@ mod number;
 mod page;
 pub mod plots;
 mod replay;
+pub mod study;
 mod summary;
 pub mod table;
 mod technique;

@@ -12,7 +12,7 @@ use super::difference::FULL;
 use super::figure;
 use super::lookup::Lookup;
 use super::summary::{self, Line};
-use crate::experiment::Cell;
+use crate::experiment::{Cell, Plan};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -48,6 +48,31 @@ pub fn page(
     let plan = lookup.plan;
     let finished: Vec<usize> = (0..plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty()).collect();
     let lines: Vec<Line> = finished.iter().map(|&c| summary::line(lookup, c)).collect();
+    let main = html! {
+        section {
+            h2 { "Answer" }
+            @if finished.len() < plan.cells.len() {
+                p.warn { "Interrupted: " (finished.len()) " of " (plan.cells.len()) " cells finished." }
+            }
+            ul { @for sentence in answer { li { (sentence) } } }
+        }
+        section { h2 { "Verdicts" } (verdicts::claims(lookup)) (verdicts::verdicts(&lines)) }
+        (places::section(lookup))
+        (faults::section(lookup))
+        @if !figures.is_empty() {
+            section { h2 { "Figures" } @for drawn in figures { (figure_block(drawn)) } }
+        }
+        @if !pictures.is_empty() {
+            section { h2 { "Images" } (gallery(pictures)) }
+        }
+        section { h2 { "Numbers" } @for &cell in &finished { (numbers::numbers(lookup, cells, cell)) } }
+        section { h2 { "How to repeat this" } (provenance(lookup)) }
+    };
+    frame(plan, &main)
+}
+
+/// A page about an experiment: its name and question, and what there is to say.
+pub(super) fn frame(plan: &Plan, main: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -58,30 +83,8 @@ pub fn page(
                 style { (PreEscaped(style())) }
             }
             body {
-                header {
-                    h1 { (plan.name) }
-                    p.question { (plan.spec.question) }
-                }
-                main {
-                    section {
-                        h2 { "Answer" }
-                        @if finished.len() < plan.cells.len() {
-                            p.warn { "Interrupted: " (finished.len()) " of " (plan.cells.len()) " cells finished." }
-                        }
-                        ul { @for sentence in answer { li { (sentence) } } }
-                    }
-                    section { h2 { "Verdicts" } (verdicts::claims(lookup)) (verdicts::verdicts(&lines)) }
-                    (places::section(lookup))
-                    (faults::section(lookup))
-                    @if !figures.is_empty() {
-                        section { h2 { "Figures" } @for drawn in figures { (figure_block(drawn)) } }
-                    }
-                    @if !pictures.is_empty() {
-                        section { h2 { "Images" } (gallery(pictures)) }
-                    }
-                    section { h2 { "Numbers" } @for &cell in &finished { (numbers::numbers(lookup, cells, cell)) } }
-                    section { h2 { "How to repeat this" } (provenance(lookup)) }
-                }
+                header { h1 { (plan.name) } p.question { (plan.spec.question) } }
+                main { (main) }
             }
         }
     }

@@ -102,12 +102,12 @@ pub fn index(estimand: Estimand, i: usize) -> String {
 }
 
 /// Shortest digits that read back to the same number.
-fn number(value: Option<f64>) -> String {
+pub(super) fn number(value: Option<f64>) -> String {
     value.map_or_else(String::new, |v| format!("{v:?}"))
 }
 
 /// Nine digits: quantiles and tail probabilities pass through the platform's logarithm, whose last bits may differ.
-fn derived(value: Option<f64>) -> String {
+pub(super) fn derived(value: Option<f64>) -> String {
     value.map_or_else(String::new, |v| format!("{v:.8e}"))
 }
 

@@ -60,11 +60,9 @@ fn invalid(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
     Some(format!("Invalid ({}{index}{channel}, to begin with): {}.", row.estimand, row.note))
 }
 
-/// Estimands of a bounce and of the whole, and what they are held against.
-type Kind = (fn(usize) -> Estimand, Estimand, &'static str);
-
 /// The first bounce that fails, or that none does although the whole fails.
 fn bounce(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
+    type Kind = (fn(usize) -> Estimand, Estimand, &'static str);
     let kinds: [Kind; 2] = [
         (Estimand::Bounce, Estimand::Mean, ""),
         (Estimand::AgreeBounce, Estimand::Agree, " (against another cell)"),

@@ -52,6 +52,9 @@ const ROUNDING: f64 = 1e-9;
 /// A sample so many times the scale could overflow a product of [`BEFORE_SPLIT`] factors.
 const HUGE: f64 = 1e60;
 
+/// So many samples are averaged before they are bet on, see [`Stake::samples_per_bet`].
+pub const PER_BET: u64 = 16;
+
 /// Factors that are multiplied before exponents are set apart.
 const BEFORE_SPLIT: u32 = 4;
 
@@ -73,6 +76,12 @@ impl Stake {
 
     pub(super) fn below(&self) -> [f64; BETS] {
         Stake::grid(self.bound.map_or(1.0, |bound| bound - self.scale))
+    }
+
+    /// Samples that the bench averages before it bets on them, because a bet costs as much as a bounce. Where a sample may
+    /// be many times the mean, which can only be if it seldom is, an average has the same bound but hides how seldom.
+    pub fn samples_per_bet(&self) -> u64 {
+        if self.bound.is_some_and(|bound| bound >= PER_BET as f64 * self.scale) { 1 } else { PER_BET }
     }
 
     /// Why one cannot bet like this.

@@ -1,7 +1,7 @@
 //! What one question shows by itself, before its family is considered.
 
 use super::question::{Engine, Question, Verdict};
-use super::sides::{Side, Sides};
+use super::sides::{Side, Sides, why_no_t};
 
 pub(super) use super::sides::POWER;
 
@@ -27,16 +27,11 @@ pub(super) struct Evidence {
 pub(super) fn weigh(q: &Question, level: f64) -> Evidence {
     let rounding = ROUNDING * q.expected.abs().max(f64::MIN_POSITIVE);
     let sides = Sides::of(q);
-    let by_t = !sides.are_exact() && q.unfit.is_none();
-    if by_t && (q.df < 1.0 || (q.expected_df < 1.0 && q.expected_std_error != 0.0)) {
-        return nothing("fewer than two blocks");
-    }
     if q.noise_free && q.std_error <= rounding && q.expected_std_error == 0.0 {
         return compare_exactly(q, rounding);
     }
-    // a spread of block means below the rounding of the mean is no variation
-    if by_t && !q.noise_free && q.std_error <= f64::EPSILON * q.mean.abs() {
-        return nothing("no variation was seen, so there is no interval");
+    if let Some(why) = why_no_t(q).filter(|_| sides.are_blind()) {
+        return nothing(&why);
     }
     let mut evidence = test(q, &sides, level);
     if q.noise_free && q.std_error > rounding {
@@ -104,7 +99,10 @@ fn test(q: &Question, sides: &Sides<'_>, level: f64) -> Evidence {
         p_different,
         p_outside: if room > 0.0 { reaches_in } else { 1.0 },
         ci: (low, high),
-        mde: reach(half, POWER) * se + systematic,
+        mde: above
+            .detectable(expected, se, half, POWER, true)
+            .max(below.detectable(expected, se, half, POWER, false))
+            + systematic,
         e_value: e_value(q, sides),
         engine: if sides.are_exact() { Engine::Exact } else { Engine::Asymptotic },
         // both one-sided tests must reject: each may miss half as often

@@ -3,6 +3,7 @@
 use super::evidence::{Evidence, too_coarse, weigh};
 use super::multiplicity::{bonferroni, holm};
 pub use super::question::{Answer, Engine, Question, Verdict};
+use super::sides::why_no_t;
 
 /// Answers all questions of a run as one family, in their order.
 ///
@@ -84,9 +85,9 @@ fn conclude(q: &Question, e: &Evidence, different: bool, equivalent: bool) -> (V
         let shown = format!("difference {difference:.3e} is significant, p = {p_different:.1e}");
         return (Verdict::Fail, shown);
     }
-    let reason = match &q.unfit {
+    let reason = match why_no_t(q) {
         _ if q.systematic >= margin => too_coarse(q),
-        Some(why) if e.reach == f64::INFINITY => why.clone(),
+        Some(why) if e.reach == f64::INFINITY => why,
         _ => missing(q, e.reach),
     };
     (Verdict::Inconclusive, reason)

@@ -6,12 +6,14 @@
 //!
 //! Whether a mean may be judged at all: [`tails`], [`tally`], [`replicates`], [`skewed`].
 //! Questions that no mean answers: [`law`], [`rate`], [`trend`]. How good the verdicts
-//! are, and those of others: [`binomial`], [`rivals`].
+//! are, and those of others: [`binomial`], [`rivals`], and on samples whose mean is known
+//! exactly [`nulls`], [`calibrate`].
 
 pub mod bets;
 #[cfg(test)]
 mod bets_hold;
 pub mod binomial;
+pub mod calibrate;
 mod evidence;
 pub mod judge;
 #[cfg(test)]
@@ -19,6 +21,7 @@ mod judge_rates;
 pub mod law;
 pub mod moments;
 pub mod multiplicity;
+pub mod nulls;
 pub mod power;
 mod question;
 pub mod rate;
@@ -26,7 +29,6 @@ pub mod replicates;
 pub mod rivals;
 mod sides;
 pub mod skewed;
-#[cfg(test)]
 mod source;
 pub mod student;
 pub mod tails;

@@ -47,4 +47,51 @@ impl Samples {
         let growth = BOLDEST * d - 0.5 * BOLDEST * BOLDEST * s2;
         0.5 * reach * reach * together as f64 / growth
     }
+
+    /// The smallest difference, in the unit of the samples, that `n` of them show with probability `power` by a one-sided
+    /// test of `level`.
+    ///
+    /// Few bets cannot show a small difference, however little noise there is: each multiplies the fortune by little more
+    /// than 1 + λ d, and λ is [`BOLDEST`] at most. Then it is larger than [`reach`] standard errors.
+    pub fn detectable(&self, n: f64, level: f64, power: f64) -> f64 {
+        let Some((room, together)) = self.bets else {
+            return reach(Engine::Asymptotic, n - 1.0, level, power) * (self.variance / n).sqrt();
+        };
+        let (bets, variance) = (n / together as f64, self.variance / (together as f64 * room * room));
+        let se = (variance / bets).sqrt();
+        let noise = quantile(power, f64::INFINITY) * se;
+        let boldest = (BETS as f64 / level).ln() / (bets * BOLDEST) + 0.5 * BOLDEST * variance + noise;
+        let asked = reach(Engine::Exact, f64::INFINITY, level, power) * se;
+        let best = (2.0 * (BETS as f64 / level).ln() / bets).sqrt();
+        room * if best > BOLDEST * variance.sqrt() { boldest.max(asked) } else { asked }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_detectable_is_what_samples_are_needed_for() {
+        // with few bets, which are as bold as can be, one asks for more than is needed
+        for (bets, most) in [(None, 1.01), (Some((1.0, 1)), 1.0 + 1e-9), (Some((2.0, 16)), 2.0)] {
+            let plan = Samples { variance: 0.5, bets };
+            for n in [2e3, 2e4, 2e6] {
+                let needed = plan.needed(plan.detectable(n, 1e-3, 0.95), 1e-3, 0.9);
+                assert!(needed > 0.99 * n && needed < most * n, "{bets:?} {n}: {needed}");
+            }
+        }
+    }
+
+    /// 128 bets of 0.94 each: in 16 standard errors there is more than in six, and yet not enough.
+    #[test]
+    fn few_bets_show_no_small_difference() {
+        let single = Samples { variance: 0.01, bets: Some((1.0, 16)) };
+        let asked = reach(Engine::Exact, f64::INFINITY, 1e-3, 0.9) * (0.01_f64 / 2048.0).sqrt();
+        let found = single.detectable(2048.0, 1e-3, 0.9);
+        assert!(found > 4.0 * asked && found > (16e3_f64).ln() / (128.0 * BOLDEST), "{found} {asked}");
+        // more and more of them: as reach says
+        let many = single.detectable(1e8, 1e-3, 0.9) / (0.01_f64 / 1e8).sqrt();
+        assert!((many / reach(Engine::Exact, f64::INFINITY, 1e-3, 0.9) - 1.0).abs() < 1e-12, "{many}");
+    }
 }

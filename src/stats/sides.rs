@@ -2,7 +2,7 @@
 //! Student's t, corrected for skewness.
 
 use super::bets::Bets;
-use super::power::reach;
+use super::power::{Samples, reach};
 use super::question::{Engine, Question};
 use super::skewed;
 use super::student::{one_sided_p, upper_quantile, welch_df};
@@ -41,13 +41,18 @@ pub(super) struct Sides<'a> {
 
 impl<'a> Sides<'a> {
     pub(super) fn of(q: &'a Question) -> Self {
-        let student = match &q.unfit {
+        let student = match why_no_t(q) {
             Some(_) => Side::Unfit,
             None => Side::Asymptotic(Student::of(q)),
         };
         let Some(bets) = &q.bets else { return Sides { above: student, below: student } };
         let below = if bets.stake.bound.is_some() { Side::Exact(bets) } else { student };
         Sides { above: Side::Exact(bets), below }
+    }
+
+    /// Whether neither side has any evidence.
+    pub(super) fn are_blind(&self) -> bool {
+        matches!((self.above, self.below), (Side::Unfit, Side::Unfit))
     }
 
     pub(super) fn are_exact(&self) -> bool {
@@ -58,6 +63,19 @@ impl<'a> Sides<'a> {
     pub(super) fn are_fit(&self) -> bool {
         !matches!(self.above, Side::Unfit) && !matches!(self.below, Side::Unfit)
     }
+}
+
+/// Why a question can not be answered by a t test.
+pub(super) fn why_no_t(q: &Question) -> Option<String> {
+    if q.unfit.is_some() {
+        return q.unfit.clone();
+    }
+    if q.df < 1.0 || (q.expected_df < 1.0 && q.expected_std_error != 0.0) {
+        return Some("fewer than two blocks".to_string());
+    }
+    // a spread of block means below the rounding of the mean is no variation
+    let varies = q.noise_free || q.std_error > f64::EPSILON * q.mean.abs();
+    (!varies).then(|| "no variation was seen, so there is no interval".to_string())
 }
 
 impl Side<'_> {
@@ -95,6 +113,16 @@ impl Side<'_> {
             Side::Asymptotic(t) => t.reaching(-upper_quantile(level / t.looks, t.df)),
             Side::Unfit => f64::INFINITY,
         }
+    }
+
+    /// The smallest difference from `expected` that has a p-value of `level` with probability `power`, where the mean has
+    /// the standard error `error`.
+    pub(super) fn detectable(&self, expected: f64, error: f64, level: f64, power: f64, above: bool) -> f64 {
+        let Side::Exact(bets) = self else { return self.reach(level, power) * error };
+        let room = if above { Some(expected) } else { bets.stake.bound.map(|bound| bound - expected) };
+        let n = bets.n as f64;
+        let samples = Samples { variance: error * error * n, bets: room.map(|room| (room, 1)) };
+        samples.detectable(n, level, power)
     }
 
     /// How many standard errors a difference must have for a p-value of `level` with probability `power`.

@@ -1,9 +1,17 @@
-//! Pseudo-random data for the tests of this module: known laws, fixed seeds.
+//! Pseudo-random data of known laws, for the tests of this module and for [`super::nulls`]: fixed seeds, and the same
+//! bits on every platform.
 
 /// SplitMix64 (Steele, Lea & Flood 2014).
+#[derive(Clone, Debug)]
 pub(crate) struct Source(pub(crate) u64);
 
 impl Source {
+    /// One of many under a seed. States that differ by a multiple of the step would run through the same numbers; hashed
+    /// ones do so by accident only.
+    pub(crate) fn keyed(seed: u64, key: u64) -> Self {
+        Source(Source(Source(seed).bits().wrapping_add(key)).bits())
+    }
+
     /// 64 random bits.
     pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -34,6 +42,7 @@ impl Source {
     }
 
     /// K >= 1 with P(K > k) = q^k.
+    #[cfg(test)]
     pub(crate) fn geometric(&mut self, q: f64) -> u64 {
         1 + libm::floor(libm::log(self.uniform()) / libm::log(q)) as u64
     }
@@ -41,6 +50,7 @@ impl Source {
     /// A walk of constant survival probability `q` in a furnace of albedo 1/2
     /// and emission 1: mean 2, tail index ln(1/q) / ln(1/(2q)), variance finite
     /// if and only if q > 1/4.
+    #[cfg(test)]
     pub(crate) fn furnace(&mut self, q: f64) -> f64 {
         let (k, ratio) = (self.geometric(q) as f64, 0.5 / q);
         if ratio == 1.0 { k } else { (libm::pow(ratio, k) - 1.0) / (ratio - 1.0) }

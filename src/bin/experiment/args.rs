@@ -26,11 +26,14 @@ pub struct Cli {
 pub enum Command {
     /// Every experiment: its question, cells, predicted rays and time
     List,
-    /// The resolved grid and its predicted cost; samples nothing
+    /// The resolved grid, its predicted cost, and how many samples a margin takes; samples nothing
     Plan {
         /// Experiments to plan
         #[arg(required = true)]
         names: Vec<String>,
+        /// The relative margin to plan for, instead of that of the claims
+        #[arg(long, value_name = "M", value_parser = relative_error)]
+        margin: Option<f64>,
     },
     /// Rebuilds CSV, plots and page from the stored cells; samples nothing
     Report {
@@ -144,6 +147,12 @@ pub struct Options {
     /// Realizations of every cell
     #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000_000))]
     pub samples: Option<u64>,
+    /// Every experiment there is
+    #[arg(long)]
+    pub all: bool,
+    /// Judge the claims and write nothing: what a nightly run wants. Takes a fresh seed, and prints it, unless --seed is given
+    #[arg(long)]
+    pub claims: bool,
     /// Only cells whose label contains TEXT
     #[arg(long, value_name = "TEXT", global = true)]
     pub filter: Option<String>,

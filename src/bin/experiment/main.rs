@@ -1,12 +1,15 @@
 //! The command line: `experiment rr_sweep`.
 
 mod args;
+mod claims;
 mod export;
 mod files;
+mod plans;
 mod progress;
 mod reference;
 mod render;
 mod run;
+mod study;
 mod subject;
 
 use args::{Cli, Command, Format};
@@ -48,8 +51,8 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
     }
     match &cli.command {
         None => run::all(&cli.names, &cli.options, stop),
-        Some(Command::List) => run::list(&cli.options),
-        Some(Command::Plan { names }) => run::plans(names, &cli.options),
+        Some(Command::List) => plans::list(&cli.options),
+        Some(Command::Plan { names, margin }) => plans::plans(names, *margin, &cli.options),
         Some(Command::Report { names }) => run::reports(names, &cli.options),
         Some(Command::Export(export)) => export::export(export, &cli.options),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),

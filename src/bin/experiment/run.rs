@@ -3,8 +3,7 @@
 use crate::args::{Format, Options};
 use crate::files::{self, Source};
 use crate::progress::Progress;
-use crate::{HELD, INTERRUPTED, NOT_HELD};
-use furnace::experiment::plan::RAYS_PER_SECOND;
+use crate::{HELD, INTERRUPTED, NOT_HELD, claims, study};
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
 use furnace::report::{self, Lookup, answer, table, terminal};
@@ -14,17 +13,32 @@ use std::time::Instant;
 
 /// Runs each named experiment; the worst exit status counts.
 pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    let every = if options.all { files::names()? } else { Vec::new() };
+    let names = if options.all { &every } else { names };
+    let fresh = Options { seed: options.seed.or_else(|| options.claims.then(fresh_seed)), ..options.clone() };
+    let options = &fresh;
     let sources = names.iter().map(|name| Source::read(name, options)).collect::<Result<Vec<_>, _>>()?;
     // a mistake in the last file shall not cost the time of the first
     let plans = sources.iter().map(|source| source.plan(options)).collect::<Result<Vec<_>, _>>()?;
     let mut worst = HELD;
     for (source, plan) in sources.iter().zip(&plans) {
-        worst = worst.max(one(source, plan, options, stop)?);
+        worst = worst.max(match options.claims {
+            true => claims::one(plan, options, stop)?,
+            false => one(source, plan, options, stop)?,
+        });
         if stop.load(Ordering::Relaxed) {
             break;
         }
     }
     Ok(worst)
+}
+
+/// A seed that nobody has chosen; it is printed, so that the run can be repeated.
+fn fresh_seed() -> u64 {
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    let seed = now.map_or(0, |now| now.as_nanos() as u64 % 1_000_000_007);
+    println!("seed {seed}: --seed {seed} repeats this");
+    seed
 }
 
 /// A pool of `--jobs` threads.
@@ -34,6 +48,9 @@ pub fn pool(options: &Options) -> Result<rayon::ThreadPool, Error> {
 }
 
 fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    if plan.spec.seeds.is_some() {
+        return study::one(source, plan, options, stop);
+    }
     let folder = source.report_folder(options);
     let store = Store::open(&folder)?;
     let (cells, seconds) = sample(plan, options, stop)?;
@@ -67,7 +84,11 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
 }
 
 /// The finished cells, and the seconds of each.
-fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
+pub fn sample(
+    plan: &Plan,
+    options: &Options,
+    stop: &AtomicBool,
+) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
     let pool = pool(options)?;
     let progress = Progress::new(plan, options.quiet || options.format == Format::Json);
     let mut cells = Vec::new();
@@ -90,7 +111,7 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Vec<Opti
     Ok((cells, seconds))
 }
 
-fn status(plan: &Plan, rows: &[Row]) -> u8 {
+pub fn status(plan: &Plan, rows: &[Row]) -> u8 {
     if mistake::all_held(plan, rows) { HELD } else { NOT_HELD }
 }
 
@@ -117,7 +138,7 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
     println!("\nThe page: {}", page.display());
 }
 
-fn provenance(source: &Source, plan: &Plan) -> String {
+pub fn provenance(source: &Source, plan: &Plan) -> String {
     let git = std::process::Command::new("git").args(["rev-parse", "HEAD"]).output();
     let commit = git.ok().filter(|out| out.status.success());
     let commit = commit.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned());
@@ -140,6 +161,10 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         let source = Source::read(name, options)?;
         let mut plan = source.plan(options)?;
         let folder = source.report_folder(options);
+        if plan.spec.seeds.is_some() {
+            worst = worst.max(study::report(&plan, &folder, options)?);
+            continue;
+        }
         let stored = store::load(&folder, &mut plan)?;
         let rows = verdict::rows(&plan, &stored.cells);
         let store = Store::open(&folder)?;
@@ -155,37 +180,4 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         worst = worst.max(status(&plan, &rows));
     }
     Ok(worst)
-}
-
-/// Prints the resolved grid of each experiment.
-pub fn plans(names: &[String], options: &Options) -> Result<u8, Error> {
-    for name in names {
-        let plan = Source::read(name, options)?.plan(options)?;
-        println!("{}: {}\n", plan.name, plan.spec.question);
-        for cell in &plan.cells {
-            println!(
-                "{:<64} {:>12} samples {:>10.2e} rays",
-                plan.label(cell),
-                cell.samples,
-                cell.total_rays()
-            );
-        }
-        println!("{}", cost(&plan));
-    }
-    Ok(HELD)
-}
-
-/// Prints a paragraph on each experiment.
-pub fn list(options: &Options) -> Result<u8, Error> {
-    for name in files::names()? {
-        let plan = Source::read(&name, options)?.plan(options)?;
-        println!("{}: {}\n    {}", plan.name, plan.spec.question, cost(&plan));
-    }
-    Ok(HELD)
-}
-
-fn cost(plan: &Plan) -> String {
-    let rays: f64 = plan.cells.iter().map(|cell| cell.total_rays()).sum();
-    let seconds = rays / RAYS_PER_SECOND;
-    format!("{} cells, at most about {rays:.1e} rays, {seconds:.0} core-seconds", plan.cells.len())
 }

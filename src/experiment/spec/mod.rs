@@ -1,11 +1,13 @@
 //! An experiment file, exactly as it was written.
 
 mod claim;
+mod null;
 mod primitives;
 mod scene;
 mod walk;
 
 pub use claim::{Claim, Limits, Plot, Quantity};
+pub use null::NullSpec;
 pub use primitives::{BsdfSpec, PointSpec, PrimitiveSpec, PrimitivesSpec, SensorSpec, ShapeSpec, SkySpec};
 pub use scene::{FlushSpec, FurnaceSpec, LooksAt, SceneSpec, SphereSpec};
 pub use walk::{EstimatorSpec, FaultNames, RouletteSpec, TechniqueSpec};
@@ -49,6 +51,9 @@ pub struct Spec {
     /// Stored images that scenes are compared with.
     #[serde(default)]
     pub reference: Vec<ReferenceSpec>,
+    /// Samples of known laws, on which the instruments themselves are measured.
+    #[serde(default)]
+    pub null: Vec<NullSpec>,
     /// What is claimed of the cells.
     #[serde(default)]
     pub claim: Vec<Claim>,

@@ -2,7 +2,7 @@
 
 use crate::estimator::{Estimator, Explicit, Heuristic, Technique};
 use crate::faults::Faulty;
-use crate::faults::direct::{EXPONENT, Light, Shadow};
+use crate::faults::direct::{EXPONENT, Facing, Light, Shadow};
 use crate::faults::mis::Weighting;
 use crate::faults::scatter::Scattering;
 use crate::faults::slip::{Emission, Slip};
@@ -27,7 +27,6 @@ pub fn wrong(
         Estimator::Explicit(e) if technique(e.technique) => Some(e),
         _ => None,
     };
-    let by_light = || sampled(|technique| technique == Technique::Light);
     match (name, slip) {
         ("mirror_light" | "metal_light", Slip::Emission(Emission::SeenFromFirst)) => {
             expected(Counted::Only(1))
@@ -41,36 +40,49 @@ pub fn wrong(
             let [behind, before] = [2, 3].map(|i| setting.primitives[i].material.le[channel]);
             Some(behind / 3.0 + before * 2.0 / 3.0)
         }
-        ("hidden_light", Slip::Shadow(Shadow::None)) => {
-            by_light()?;
-            let (p, n, scale) = floor(setting, channel);
-            Some(scale * form_factor::polygon(p, n, &setting.primitives[1].shape.corners()))
-        }
-        ("disk_light", Slip::Light(slip)) => {
-            by_light()?;
-            let (height, radius) = disk(setting)?;
-            Some(floor(setting, channel).2 * mistaken_disk(slip, radius / height, height)?)
-        }
         ("disk_light" | "sky_over_plane", Slip::Scattering(slip)) => {
             by_chance(&faulty.estimator)?;
             mistaken_directions(slip, setting, channel)
         }
+        ("point_over_plane", slip) => {
+            let factor = mistaken_point(slip, &sampled(Technique::samples_lights)?, setting)?;
+            Some(factor * expected(Counted::All)?)
+        }
+        _ => {
+            sampled(|technique| technique == Technique::Light)?;
+            mistaken_light(slip, name, setting, expected(Counted::All)?, channel)
+        }
+    }
+}
+
+/// Where all light is sampled.
+fn mistaken_light(slip: Slip, name: &str, setting: &Setting, right: f64, channel: usize) -> Option<f64> {
+    match (name, slip) {
+        ("hidden_light", Slip::Shadow(Shadow::None)) => {
+            let (p, n, scale) = floor(setting, channel);
+            Some(scale * form_factor::polygon(p, n, &setting.primitives[1].shape.corners()))
+        }
+        ("turned_light", Slip::Facing(Facing::LightBehind)) => {
+            let Shape::Disk(turned) = setting.primitives[2].shape else { return None };
+            let (p, n, _) = floor(setting, channel);
+            let (height, offset) = (n.dot(turned.center - p), n.cross(turned.center - p).length());
+            let le = albedo(setting)[channel] * setting.primitives[2].material.le[channel];
+            Some(right + le * form_factor::disk_parallel(offset, height, turned.radius))
+        }
+        ("disk_light", Slip::Light(slip)) => {
+            let (height, radius) = disk(setting)?;
+            Some(floor(setting, channel).2 * mistaken_disk(slip, radius / height, height)?)
+        }
         ("rising_light", Slip::Light(Light::ShutterOpens)) => {
-            by_light()?;
             let (height, radius) = disk(setting)?;
             let s = radius / height;
             Some(floor(setting, channel).2 * s * s / (1.0 + s * s))
         }
         ("sky_over_plane", Slip::Light(Light::SkyExponent)) => {
-            by_light()?;
             let Some(Sky::Cosine { radiance, exponent: n, .. }) = setting.sky else { return None };
             let m = n + EXPONENT;
             let albedo = albedo(setting)[channel];
             Some(2.0 * albedo * radiance[channel] * (n + 1.0) / ((m + 1.0) * (2.0 * n - m + 2.0)))
-        }
-        ("point_over_plane", slip) => {
-            let factor = mistaken_point(slip, &sampled(Technique::samples_lights)?, setting)?;
-            Some(factor * expected(Counted::All)?)
         }
         _ => None,
     }

@@ -24,6 +24,7 @@ mod props;
 mod rising_light;
 mod sky_over_plane;
 mod sphere_light;
+mod turned_light;
 mod unequal_lights;
 mod uniform_sky;
 mod water_floor;
@@ -35,12 +36,13 @@ use crate::scene::{Directions, Rgb};
 use std::ops::RangeInclusive;
 
 /// All of them.
-pub const EXHIBITS: [&Exhibit; 23] = [
+pub const EXHIBITS: [&Exhibit; 24] = [
     &disk_light::EXHIBIT,
     &polygon_light::EXHIBIT,
     &sphere_light::EXHIBIT,
     &unequal_lights::EXHIBIT,
     &hidden_light::EXHIBIT,
+    &turned_light::EXHIBIT,
     &point_over_plane::EXHIBIT,
     &point_in_sphere::EXHIBIT,
     &uniform_sky::EXHIBIT,

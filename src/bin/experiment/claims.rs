@@ -1,0 +1,33 @@
+//! Claims without reports: a paragraph an experiment.
+
+use crate::args::Options;
+use crate::run::{sample, status};
+use crate::{INTERRUPTED, study};
+use furnace::experiment::row::CHANNELS;
+use furnace::experiment::{Error, Plan, verdict};
+use furnace::stats::Verdict;
+use std::sync::atomic::AtomicBool;
+
+/// Judges one experiment and prints what does not hold.
+pub fn one(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    if plan.spec.seeds.is_some() {
+        return study::claims(plan, options, stop);
+    }
+    let (cells, _) = sample(plan, options, stop)?;
+    let rows = verdict::rows(plan, &cells);
+    let judged = rows.iter().filter(|row| row.verdict.is_some()).count();
+    let held = rows.iter().filter(|row| row.verdict == Some(Verdict::Pass)).count();
+    println!("{}: {held} of {judged} questions passed", plan.name);
+    for row in &rows {
+        let cell = &plan.cells[row.cell];
+        // mistakes are there to be caught
+        if let Some(verdict) = row.verdict.filter(|v| *v != Verdict::Pass && cell.fault.is_none()) {
+            let channel = row.channel.map_or("", |c| CHANNELS[c]);
+            let index = row.estimand.index().map_or_else(String::new, |i| format!(" {i}"));
+            let (label, estimand, note) = (plan.label(cell), row.estimand, &row.note);
+            println!("    {verdict}: {label}, {estimand}{index} {channel}: {note}");
+        }
+    }
+    let interrupted = cells.iter().any(Option::is_none);
+    Ok(if interrupted { INTERRUPTED } else { status(plan, &rows) })
+}

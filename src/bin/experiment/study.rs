@@ -1,0 +1,135 @@
+//! Studies: every cell with many seeds.
+
+use crate::args::{Format, Options};
+use crate::files::Source;
+use crate::progress::Progress;
+use crate::run::{pool, provenance};
+use crate::{HELD, INTERRUPTED, NOT_HELD};
+use furnace::experiment::store::Store;
+use furnace::experiment::study::{Detection, detect};
+use furnace::experiment::{Error, Plan};
+use furnace::report::study::{self, Studied};
+use furnace::stats::nulls::NullRow;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// What runs and synthetic laws have shown.
+#[derive(Serialize, Deserialize)]
+struct Outcome {
+    detections: Vec<Option<Detection>>,
+    nulls: Vec<NullRow>,
+    /// All of it is there.
+    whole: bool,
+}
+
+/// What a study keeps.
+const STUDY: &str = "study.json";
+
+/// Runs a study.
+pub fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    let store = Store::open(&source.report_folder(options))?;
+    let (outcome, timing) = sample(plan, options, stop)?;
+    let interrupted = !outcome.whole;
+    store.write("timing.csv", timing.as_bytes())?;
+    store.write("run.json", provenance(source, plan).as_bytes())?;
+    store.write(STUDY, &serde_json::to_vec(&outcome).expect("counts have a JSON form"))?;
+    let held = write(plan, &outcome, &store)?;
+    let partial = format!("{}-interrupted", source.name);
+    let folder = store.publish(interrupted.then_some(partial.as_str()))?;
+    print(plan, &outcome, &folder, options);
+    Ok(if interrupted { INTERRUPTED } else { held })
+}
+
+/// Judges a study without a report.
+pub fn claims(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    let (outcome, _) = sample(plan, options, stop)?;
+    let studied = Studied::new(plan, &outcome.detections, &outcome.nulls);
+    println!("{}:", plan.name);
+    study::sentences(&studied).iter().for_each(|sentence| println!("    {sentence}"));
+    Ok(if outcome.whole { status(&studied) } else { INTERRUPTED })
+}
+
+fn status(studied: &Studied<'_>) -> u8 {
+    if studied.holds() { HELD } else { NOT_HELD }
+}
+
+/// What the runs of each cell have shown, and how long they took.
+fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Outcome, String), Error> {
+    let pool = pool(options)?;
+    let progress = Progress::new(plan, options.quiet || options.format == Format::Json);
+    let mut detections = Vec::new();
+    let mut timing = String::from("cell,seconds\n");
+    for (i, cell) in plan.cells.iter().enumerate() {
+        let label = plan.label(cell);
+        progress.cell(&label);
+        let start = Instant::now();
+        let detection = pool.install(|| detect(plan, i, stop, &|rays| progress.rays(rays)));
+        let seconds = start.elapsed().as_secs_f64();
+        if detection.is_some() {
+            progress.done(&label, i + 1, plan, seconds);
+            timing.push_str(&format!("{i},{seconds:.4}\n"));
+        }
+        detections.push(detection);
+    }
+    let mut nulls = Vec::new();
+    for null in &plan.spec.null {
+        let null = null.planned(options.quick);
+        progress.cell(&null.law.to_string());
+        let start = Instant::now();
+        nulls.push(pool.install(|| null.rows(plan.spec.seed, stop)));
+        timing.push_str(&format!("{},{:.4}\n", null.law, start.elapsed().as_secs_f64()));
+    }
+    progress.finish();
+    let whole = detections.iter().all(Option::is_some) && nulls.iter().all(Option::is_some);
+    Ok((Outcome { detections, nulls: nulls.into_iter().flatten().flatten().collect(), whole }, timing))
+}
+
+/// Rebuilds the report of a stored study.
+pub fn report(plan: &Plan, folder: &Path, options: &Options) -> Result<u8, Error> {
+    let path = folder.join(STUDY);
+    let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
+    let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", path.display()));
+    let outcome: Outcome = serde_json::from_slice(&text).map_err(damaged)?;
+    if outcome.detections.len() != plan.cells.len() {
+        let why = format!("{} holds other cells than are planned now; run the study again", path.display());
+        return Err(Error::Refused(why));
+    }
+    let store = Store::open(folder)?;
+    for file in ["timing.csv", "run.json", STUDY] {
+        let path = folder.join(file);
+        store.write(file, &std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?)?;
+    }
+    let held = write(plan, &outcome, &store)?;
+    let folder = store.publish(None)?;
+    print(plan, &outcome, &folder, options);
+    Ok(held)
+}
+
+fn write(plan: &Plan, outcome: &Outcome, store: &Store) -> Result<u8, Error> {
+    let studied = Studied::new(plan, &outcome.detections, &outcome.nulls);
+    if !outcome.nulls.is_empty() {
+        store.write("nulls.csv", &study::nulls::csv(&outcome.nulls))?;
+    }
+    store.write("results.csv", &study::csv(&studied))?;
+    store.write("index.html", study::page(&studied, !outcome.whole).as_bytes())?;
+    Ok(status(&studied))
+}
+
+fn print(plan: &Plan, outcome: &Outcome, folder: &Path, options: &Options) {
+    let Outcome { detections, nulls, .. } = outcome;
+    let sentences = study::sentences(&Studied::new(plan, detections, nulls));
+    let page = folder.join("index.html");
+    if options.format == Format::Json {
+        let object = serde_json::json!({
+            "schema": 1, "experiment": plan.name, "answer": sentences, "detections": detections, "nulls": nulls,
+            "page": page,
+        });
+        println!("{object}");
+        return;
+    }
+    println!("{}\n", plan.spec.question);
+    sentences.iter().for_each(|sentence| println!("- {sentence}"));
+    println!("\nThe page: {}", page.display());
+}
