@@ -92,9 +92,10 @@ fn failing<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     rows.iter().filter(|row| row.verdict == Some(Verdict::Fail)).copied().collect()
 }
 
-/// What is known of a bounce that does not fail.
+/// What is known of a bounce or a channel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Known {
+    Wrong,
     Right,
     /// Within the margin, and yet significantly different by itself.
     Suspect,
@@ -103,7 +104,7 @@ enum Known {
     Nothing,
 }
 
-/// The worst of the channels.
+/// The worst of these rows.
 fn known(lookup: &Lookup<'_>, rows: &[&Row]) -> Known {
     let level = |row: &Row| Some(budget::shares(lookup).get(row.claim?)?.level());
     let is_suspect = |row: &&Row| row.p_value.zip(level(row)).is_some_and(|(p, level)| p <= level);
@@ -111,7 +112,8 @@ fn known(lookup: &Lookup<'_>, rows: &[&Row]) -> Known {
         Some(Verdict::Pass) if rows.iter().any(is_suspect) => Known::Suspect,
         Some(Verdict::Pass) => Known::Right,
         Some(Verdict::Invalid) => Known::Invalid,
-        Some(_) => Known::Undecided,
+        Some(Verdict::Fail) => Known::Wrong,
+        Some(Verdict::Inconclusive) => Known::Undecided,
         None => Known::Nothing,
     }
 }
@@ -187,20 +189,21 @@ fn channels(lookup: &Lookup<'_>, cell: usize) -> Option<String> {
     if means.iter().all(|row| row.verdict.is_none()) {
         means = rows(lookup, cell, Estimand::Agree);
     }
-    let of = |verdict: Option<Verdict>, what: &str| {
+    let of = |wanted: Known, what: &str| {
         let names: Vec<String> = means
             .iter()
-            .filter(|row| row.verdict == verdict)
+            .filter(|row| known(lookup, &[**row]) == wanted)
             .filter_map(|row| Some(CHANNELS[row.channel?].to_owned()))
             .collect();
         (!names.is_empty()).then(|| format!("{} {what}", number::list(&names, "and")))
     };
     let parts = [
-        of(Some(Verdict::Fail), "wrong"),
-        of(Some(Verdict::Pass), "right"),
-        of(Some(Verdict::Inconclusive), "undecided"),
-        of(Some(Verdict::Invalid), "invalid"),
-        of(None, "not judged"),
+        of(Known::Wrong, "wrong"),
+        of(Known::Right, "right"),
+        of(Known::Suspect, "within the margin, but significantly different"),
+        of(Known::Undecided, "undecided"),
+        of(Known::Invalid, "invalid"),
+        of(Known::Nothing, "not judged"),
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     let judged = means.iter().any(|row| matches!(row.verdict, Some(Verdict::Fail | Verdict::Pass)));
