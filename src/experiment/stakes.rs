@@ -8,7 +8,6 @@ use super::spec::Claim;
 use super::subject::counted;
 use crate::estimator::BINS;
 use crate::faults::Slip;
-use crate::scene::library::SceneKind;
 use crate::stats::Stake;
 use crate::stats::power::Samples;
 use crate::truth::{Counted, Known, Truth, bound};
@@ -32,18 +31,12 @@ fn streams(plan: &Plan, cell: &CellPlan) -> Vec<Stream> {
     let bins = (0..BINS).map(|bin| (Some(bin), counted(bin)));
     let all = std::iter::once((None, Counted::All)).chain(bins);
     let stream = |(bin, counted): (Option<usize>, Counted), channel: usize| {
-        Some(Stream { bin, channel, stake: stake(&cell.scene, cell, &truth, channel, counted)? })
+        Some(Stream { bin, channel, stake: stake(plan, cell, &truth, channel, counted)? })
     };
     all.flat_map(|what| (0..3).filter_map(move |channel| stream(what, channel))).collect()
 }
 
-fn stake(
-    scene: &SceneKind,
-    cell: &CellPlan,
-    truth: &Truth,
-    channel: usize,
-    counted: Counted,
-) -> Option<Stake> {
+fn stake(plan: &Plan, cell: &CellPlan, truth: &Truth, channel: usize, counted: Counted) -> Option<Stake> {
     let expected = truth.expected(channel, counted).filter(|e| e.std_error == 0.0 && e.value > 0.0)?;
     let steady = truth.theory().is_some_and(|t| t.central(channel, counted, 2) == Known::Value(0.0));
     if steady {
@@ -51,9 +44,36 @@ fn stake(
     }
     // photons are no paths, and a path's bound is none of theirs
     let is_path = cell.fault.is_none_or(|fault| !matches!(fault.slip, Slip::Density(_)));
-    let bound = bound::of(scene, &cell.estimator, channel, counted).filter(|_| is_path);
+    // without a closed form nobody knows the variance, and so whether a bound would ask for too many samples
+    let is_planned = is_path && truth.theory().is_some();
+    let bound = bound::of(&cell.scene, &cell.estimator, channel, counted).filter(|_| is_planned);
     let stake = Stake { scale: expected.value, bound: bound.filter(|bound| *bound > expected.value) };
-    stake.defect().is_none().then_some(stake)
+    let [above, below] = is_worth_it(plan, cell, truth, channel, &stake);
+    // the bound of a bounce is worth what it is: whether its samples suffice is foreseen
+    let stake = if below || counted != Counted::All { stake } else { Stake { bound: None, ..stake } };
+    (above && stake.defect().is_none()).then_some(stake)
+}
+
+/// More samples than this times those of a t test are not taken for the sake of an exact answer.
+const DEAR: f64 = 3.0;
+
+/// Whether bets on the mean, above and below, take about as few samples as a t test: few bets show nothing, however little
+/// there is to scatter, nor do bets against a mean that may hide in one sample of a thousand. By theory's variance, before
+/// the first sample.
+fn is_worth_it(plan: &Plan, cell: &CellPlan, truth: &Truth, channel: usize, stake: &Stake) -> [bool; 2] {
+    let variance = truth.theory().and_then(|t| t.central(channel, Counted::All, 2).value());
+    let claims = plan.spec.claim.iter().enumerate();
+    let claim =
+        claims.filter_map(|(i, c)| Some((i, c.unbiased()?))).find(|(_, l)| l.covers(&cell.scene_label));
+    let whole = truth.expected(channel, Counted::All);
+    let (Some(variance), Some((claim, limits)), Some(whole)) = (variance, claim, whole) else {
+        return [true; 2];
+    };
+    let margin = limits.margin * truth.mean(channel, Counted::All).map_or(whole.value, |right| right.value);
+    let level = plan.spec.claim[claim].alpha() / plan.questions(claim) as f64;
+    let needed = |bets| Samples { variance, bets }.needed(margin, level, 0.99);
+    let is_cheap = |room: f64| needed(Some((room, stake.samples_per_bet()))) <= DEAR * needed(None);
+    [is_cheap(whole.value), stake.bound.is_none_or(|bound| is_cheap(bound - stake.scale))]
 }
 
 /// Cells that others are compared with, and images, of which one wants to see as much as was asked for, go on to the end.
