@@ -1,7 +1,7 @@
 //! A t that allows for skewness.
 //!
 //! Radiance is skewed to the right: rare bright paths make mean and standard error large together. Plain t tests then see
-//! too many means that are too low, and too few that are too high. Johnson's [1978] correction undoes that; Hall's [1992]
+//! too many means that are too low, and too few that are too high. Johnson's (1978) correction undoes that; Hall's (1992)
 //! adds the cubic term that makes it monotone, so that it inverts to limits.
 //!
 //! Rejections of a true mean at a nominal 1 % per side, in percent of 20 000 simulations:
