@@ -8,13 +8,13 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 const FILE: &str = r#"question = "Enough?"
-samples = 65_536
+samples = 1_048_576
 [[claim]]
-unbiased = { alpha = 1e-3, margin = 0.05 }
+unbiased = { alpha = 1e-3, margin = 0.02 }
 [grid]
 scene = [{ furnace = { albedo = 0.5 } }]
 estimator = ["implicit"]
-roulette = [{ constant = { q = 0.9 } }]
+roulette = [{ constant = { q = 0.6 } }]
 "#;
 
 fn run(file: &str) -> (Plan, Cell, Vec<Row>) {
@@ -33,17 +33,17 @@ fn mean(rows: &[Row]) -> &Row {
 fn at_the_first_look_that_suffices() {
     let (plan, cell, rows) = run(FILE);
     assert!(plan.cells[0].may_stop);
-    assert_eq!(cell.cost.n, 65_536 / 8, "an eighth is enough");
+    assert_eq!(cell.cost.n, 1_048_576 / 8, "an eighth is enough");
     let row = mean(&rows);
     assert_eq!((row.verdict, row.engine), (Some(Verdict::Pass), Some(Engine::Exact)), "{}", row.note);
-    assert_eq!((row.samples, row.needed), (65_536 / 8, Some(65_536 / 8)));
+    assert_eq!((row.samples, row.needed), (1_048_576 / 8, Some(1_048_576 / 8)));
     assert!(row.e_value.unwrap() < 1e3);
 }
 
 #[test]
 fn not_while_something_is_open() {
-    let (_, cell, rows) = run(&FILE.replace("margin = 0.05", "margin = 1e-6"));
-    assert_eq!(cell.cost.n, 65_536);
+    let (_, cell, rows) = run(&FILE.replace("margin = 0.02", "margin = 1e-6"));
+    assert_eq!(cell.cost.n, 1_048_576);
     let row = mean(&rows);
     assert_eq!((row.verdict, row.needed), (Some(Verdict::Inconclusive), None));
     assert!(row.note.contains("times the samples would be needed"), "{}", row.note);
@@ -51,16 +51,16 @@ fn not_while_something_is_open() {
 
 #[test]
 fn not_where_others_are_compared_with_it() {
-    let agree = "[[claim]]\nagree = { estimator = \"implicit\", roulette = \"constant(q=0.9)\", alpha = 0.01, margin = 0.1 }\n[grid]";
+    let agree = "[[claim]]\nagree = { estimator = \"implicit\", roulette = \"constant(q=0.6)\", alpha = 0.01, margin = 0.1 }\n[grid]";
     let (plan, cell, _) = run(&FILE.replace("[grid]", agree));
     assert!(!plan.cells[0].may_stop);
-    assert_eq!(cell.cost.n, 65_536);
+    assert_eq!(cell.cost.n, 1_048_576);
 }
 
 /// A wrong value is found as early as a right one is shown; what comes later cannot take it back.
 #[test]
 fn what_is_decided_stays_decided() {
-    let (plan, mut cell, _) = run(&FILE.replace("margin = 0.05", "margin = 1e-6"));
+    let (plan, mut cell, _) = run(&FILE.replace("margin = 0.02", "margin = 1e-6"));
     let decided = furnace::experiment::cell::Decided {
         estimand: Estimand::Mean,
         channel: Some(0),
