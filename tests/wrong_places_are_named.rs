@@ -84,7 +84,7 @@ fn the_first_wrong_bounce_and_what_else_fails_are_named() {
             "Before it: 0 shown to be right within the margin.",
         ],
     );
-    says(&twice, &["R by +0.", "where 0.800 is right", "R wrong"]);
+    says(&twice, &["R by +0.", "where 0.800 is right", "Channels of the mean: R, G and B wrong"]);
     says(
         &told("survivors_not_weighted"),
         &["First wrong bounce: 2, too dark in R", "Before it: 0, 1 shown to be right within the margin."],
