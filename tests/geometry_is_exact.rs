@@ -8,7 +8,7 @@ use furnace::sampling::{Address, Stream};
 use furnace::scene::geometry::{Disk, NOWHERE, Rectangle, SpherePatch, Triangle};
 use furnace::scene::library::{Patch, SceneKind, View};
 use furnace::scene::spheres::Spheres;
-use furnace::scene::{Bsdf, Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
+use furnace::scene::{Bsdf, Carried, Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
 use glam::DVec3;
 
 const GREY: Material = Material { bsdf: Bsdf::Lambert { albedo: Rgb::splat(0.5) }, le: Rgb::ZERO };
@@ -88,7 +88,7 @@ fn nearest(scene: &Scene, ray: &Ray) -> (f64, u32) {
 fn leave(scene: &Scene, id: usize, stream: &mut Stream) -> Ray {
     let surface = &scene.surfaces()[id];
     let (p, frame) = surface.sample_area(stream.u2());
-    let d = GREY.bsdf.sample(Directions::Uniform, &frame, DVec3::Z, stream.u2()).wi;
+    let d = GREY.bsdf.sample(Carried::Radiance, Directions::Uniform, &frame, DVec3::Z, stream.u2()).wi;
     Ray { o: p, d, from: id as u32 }
 }
 
@@ -130,7 +130,9 @@ fn closed_scenes_do_not_leak() {
             if let Shape::Sphere(s) = &scene.surfaces()[hit.surface as usize].shape {
                 drift = drift.max((hit.p.distance(s.center) / s.radius - 1.0).abs());
             }
-            ray = hit.spawn(GREY.bsdf.sample(Directions::Cosine, &hit.frame, DVec3::Z, stream.u2()).wi);
+            ray = hit.spawn(
+                GREY.bsdf.sample(Carried::Radiance, Directions::Cosine, &hit.frame, DVec3::Z, stream.u2()).wi,
+            );
         }
         assert!(drift < 1e-12, "{name}: {drift:e} off the sphere");
     }

@@ -7,7 +7,7 @@ use furnace::sampling::{Address, Stream, warp};
 use furnace::scene::geometry::{Disk, NOWHERE, Rectangle};
 use furnace::scene::lanes::RectangleLanes;
 use furnace::scene::library::SceneKind;
-use furnace::scene::{Bsdf, Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
+use furnace::scene::{Bsdf, Carried, Directions, Material, Ray, Rgb, Scene, Sensor, Shape, Surface};
 use glam::DVec3;
 
 const GREY: Material = Material { bsdf: Bsdf::Lambert { albedo: Rgb::splat(0.5) }, le: Rgb::ZERO };
@@ -100,7 +100,7 @@ fn the_cornell_box_looks_the_same() {
     for i in 0..100_000 {
         let id = seen[i % seen.len()];
         let (p, frame) = surfaces[id].sample_area(stream.u2());
-        let d = GREY.bsdf.sample(Directions::Uniform, &frame, DVec3::Z, stream.u2()).wi;
+        let d = GREY.bsdf.sample(Carried::Radiance, Directions::Uniform, &frame, DVec3::Z, stream.u2()).wi;
         hits += u32::from(assert_agree(&scene, &lanes, &Ray { o: p, d, from: id as u32 }));
         // along an axis: parallel to most planes, where distances are infinite
         let axis = DVec3::AXES[i % 3] * if i % 2 == 0 { 1.0 } else { -1.0 };

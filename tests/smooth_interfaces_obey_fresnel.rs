@@ -9,7 +9,7 @@ use furnace::estimator::{Ctx, Estimate, Implicit, Roulette, Rule, Tally};
 use furnace::sampling::{Address, Stream, warp};
 use furnace::scene::geometry::{NOWHERE, Rectangle, SpherePatch};
 use furnace::scene::{
-    Bsdf, Directions, Hit, Material, Ray, Rgb, Scene, Sensor, Shape, Sky, Surface, fresnel,
+    Bsdf, Carried, Directions, Hit, Material, Ray, Rgb, Scene, Sensor, Shape, Sky, Surface, fresnel,
 };
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -84,7 +84,7 @@ fn inclined(n: DVec3, cos: f64, turn: f64) -> DVec3 {
 }
 
 fn sample(bsdf: Bsdf, n: DVec3, wo: DVec3, u: f64) -> (DVec3, Rgb) {
-    let s = bsdf.sample(Directions::Cosine, &Frame::around(n), wo, (u, 0.3));
+    let s = bsdf.sample(Carried::Radiance, Directions::Cosine, &Frame::around(n), wo, (u, 0.3));
     assert!(s.pdf.is_none() && (s.wi.length() - 1.0).abs() < 1e-15, "{s:?}");
     (s.wi, s.weight)
 }
@@ -252,7 +252,9 @@ fn no_density_and_no_f_belong_to_single_directions() {
     {
         assert!(bsdf.is_dirac());
         for cos in [-0.7, 0.0, 0.3, 1.0] {
-            assert_eq!((bsdf.pdf(way, cos), bsdf.f(0.3, cos)), (None, Rgb::ZERO), "{bsdf:?}");
+            let wi = DVec3::new((1.0f64 - cos * cos).sqrt(), 0.0, cos);
+            let (pdf, f) = (bsdf.pdf(way, DVec3::Z, wi, wi), bsdf.f(DVec3::Z, DVec3::Z, wi));
+            assert_eq!((pdf, f), (None, Rgb::ZERO), "{bsdf:?}");
         }
     }
     assert!(!Bsdf::Lambert { albedo: Rgb::ONE }.is_dirac());

@@ -89,7 +89,7 @@ fn weights_sum_to_one_along_sampled_directions() {
                 let Some(light) = cx.direct(&x, how) else { continue };
                 let along = x.spawn(light.wi);
                 let hit = cx.hit(&along).expect("the light");
-                let direction = || x.material.bsdf.pdf(directions, x.frame.n.dot(light.wi));
+                let direction = || x.material.bsdf.pdf(directions, x.frame.n, x.wo, light.wi);
                 for technique in TECHNIQUES {
                     let of_light = technique.of_light(light.pdf, direction);
                     let of_hit = technique.of_hit(direction(), || cx.light_pdf(&along, &hit, how));
@@ -97,7 +97,7 @@ fn weights_sum_to_one_along_sampled_directions() {
                 }
                 // and both find the same radiance
                 let pdf = light.pdf.unwrap().0;
-                let f_cos = x.material.bsdf.f(1.0, 1.0) * x.frame.n.dot(light.wi);
+                let f_cos = x.material.bsdf.f(x.frame.n, x.frame.n, x.frame.n) * x.frame.n.dot(light.wi);
                 assert!((f_cos * hit.le / pdf).abs_diff_eq(light.radiance, 1e-9 / pdf), "{light:?} {hit:?}");
                 found += 1;
             }

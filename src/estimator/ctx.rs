@@ -2,7 +2,7 @@
 //! a ray be traced.
 
 use crate::sampling::{PdfW, Stream};
-use crate::scene::{Directions, Hit, LightSampling, Ray, Rgb, Scene, Start};
+use crate::scene::{Carried, Directions, Hit, LightSampling, Ray, Rgb, Scene, Start};
 use glam::DVec3;
 
 /// Bounces 0 to 7 have a bin each; the last bin holds all later ones.
@@ -141,7 +141,7 @@ impl<'a> Ctx<'a> {
         if cos <= 0.0 || !self.visible(x, light.to_light, light.surface) {
             return None;
         }
-        let f = x.material.bsdf.f(x.frame.n.dot(x.wo), cos);
+        let f = x.material.bsdf.f(x.frame.n, x.wo, wi);
         Some(Direct { radiance: f * light.le * (cos * light.weight), wi, pdf: light.pdf })
     }
 
@@ -154,7 +154,7 @@ impl<'a> Ctx<'a> {
     /// A continued direction at `x`.
     #[inline]
     pub fn scatter(&mut self, x: &Hit<'_>, directions: Directions) -> Step {
-        let s = x.material.bsdf.sample(directions, &x.frame, x.wo, self.u2());
+        let s = x.material.bsdf.sample(Carried::Radiance, directions, &x.frame, x.wo, self.u2());
         Step { ray: x.spawn(s.wi), weight: s.weight, pdf: s.pdf }
     }
 

@@ -51,7 +51,7 @@ impl Explicit {
             if self.technique.samples_lights()
                 && let Some(light) = cx.direct(&x, self.lights)
             {
-                let direction = || x.material.bsdf.pdf(self.directions, x.frame.n.dot(light.wi));
+                let direction = || x.material.bsdf.pdf(self.directions, x.frame.n, x.wo, light.wi);
                 cx.add(bounce, beta * light.radiance * self.technique.of_light(light.pdf, direction));
             }
             let sampled = self.technique == Technique::Light && !x.material.bsdf.is_dirac();

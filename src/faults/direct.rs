@@ -103,17 +103,17 @@ impl Walk {
             Slip::Light(Light::Stale) => path.last.unwrap_or(x.material).bsdf,
             _ => x.material.bsdf,
         };
-        let cos_o = x.frame.n.dot(x.wo);
+        let (n, wo) = (x.frame.n, x.wo);
         let f = match self.slip {
-            Slip::Light(Light::Swapped) => bsdf.f(cos, cos_o),
-            Slip::Light(Light::NoPi) => bsdf.f(cos_o, cos) * PI,
-            _ => bsdf.f(cos_o, cos),
+            Slip::Light(Light::Swapped) => bsdf.f(n, wi, wo),
+            Slip::Light(Light::NoPi) => bsdf.f(n, wo, wi) * PI,
+            _ => bsdf.f(n, wo, wi),
         };
         let factor = match self.slip {
             Slip::Light(Light::NoCosine) => light.weight,
             _ => cos * light.weight,
         };
-        let weight = self.light_weight(x, &light, cos, cos_at_light);
+        let weight = self.light_weight(x, &light, cos_at_light);
         Some(DirectLight { radiance: f * light.le * factor, weight, cos_at_light })
     }
 

@@ -43,8 +43,8 @@ impl Walk {
         })
     }
 
-    /// Weight of a sampled point on an emitter; `cos` is taken at `x`.
-    pub fn light_weight(&self, x: &Hit<'_>, light: &LightSample, cos: f64, cos_at_light: f64) -> f64 {
+    /// Weight of a sampled point on an emitter.
+    pub fn light_weight(&self, x: &Hit<'_>, light: &LightSample, cos_at_light: f64) -> f64 {
         let pdf = match self.weighting() {
             Some(Weighting::PointShared) => light.pdf.or(Some(PdfW(light.pmf))),
             Some(Weighting::PerArea | Weighting::PerAreaOnce) if light.surface != SKY => {
@@ -54,7 +54,8 @@ impl Walk {
             _ => light.pdf,
         };
         self.technique.of_light(pdf, || {
-            let pdf = x.material.bsdf.pdf(self.directions, cos);
+            let wi = light.to_light / light.distance;
+            let pdf = x.material.bsdf.pdf(self.directions, x.frame.n, x.wo, wi);
             match self.weighting() {
                 Some(Weighting::Scaled) => pdf.map(|pdf| PdfW(SCALE * pdf.0)),
                 _ => pdf,

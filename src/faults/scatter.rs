@@ -8,7 +8,7 @@ use super::walk::{Path, Walk};
 use crate::estimator::{Ctx, Step};
 use crate::sampling::PdfW;
 use crate::sampling::warp::{cosine_hemisphere, sin_cos_turn, uniform_hemisphere};
-use crate::scene::{Bsdf, Directions, Hit, fresnel};
+use crate::scene::{Bsdf, Carried, Directions, Hit, fresnel};
 use glam::DVec3;
 
 /// Mistakes in continued directions.
@@ -84,16 +84,18 @@ impl Walk {
             Directions::Cosine => 1.0,
             Directions::Uniform => 2.0 * local.z,
         };
-        let pdf = x.material.bsdf.pdf(self.directions, local.z);
-        Step { ray: x.spawn(x.frame.to_world(local)), weight: x.albedo() * ratio, pdf }
+        let wi = x.frame.to_world(local);
+        let pdf = x.material.bsdf.pdf(self.directions, x.frame.n, x.wo, wi);
+        Step { ray: x.spawn(wi), weight: x.albedo() * ratio, pdf }
     }
 
     /// The same by f cos / pdf, which is 0/0 in the plane of the surface.
     fn quotient(&self, x: &Hit<'_>, local: DVec3) -> Step {
-        let pdf = x.material.bsdf.pdf(self.directions, local.z);
+        let wi = x.frame.to_world(local);
+        let pdf = x.material.bsdf.pdf(self.directions, x.frame.n, x.wo, wi);
         let PdfW(density) = pdf.unwrap_or(PdfW(1.0));
-        let weight = x.material.bsdf.f(x.frame.n.dot(x.wo), local.z) * local.z / density;
-        Step { ray: x.spawn(x.frame.to_world(local)), weight, pdf }
+        let weight = x.material.bsdf.f(x.frame.n, x.wo, wi) * local.z / density;
+        Step { ray: x.spawn(wi), weight, pdf }
     }
 }
 
@@ -115,6 +117,6 @@ fn every_other(ior: f64, x: &Hit<'_>, cx: &mut Ctx<'_>) -> Step {
     let (u, v) = cx.u2();
     // below the reflectance a ray is reflected
     let u = if u < 0.5 || reflectance >= 1.0 { 0.0 } else { reflectance };
-    let s = x.material.bsdf.sample(Directions::Cosine, &x.frame, x.wo, (u, v));
+    let s = x.material.bsdf.sample(Carried::Radiance, Directions::Cosine, &x.frame, x.wo, (u, v));
     Step { ray: x.spawn(s.wi), weight: s.weight, pdf: s.pdf }
 }

@@ -57,6 +57,15 @@ pub enum Directions {
     Uniform,
 }
 
+/// What a path carries, and so which way light goes along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carried {
+    /// Radiance, from where the path will come to where it came from: paths from the eye.
+    Radiance,
+    /// Power, the way that the path goes: paths from the lights.
+    Power,
+}
+
 /// A continued direction.
 #[derive(Clone, Copy, Debug)]
 pub struct DirectionSample {
@@ -99,19 +108,20 @@ impl Bsdf {
         }
     }
 
-    /// The BSDF f [1/sr] between two directions, without the cosine; zero where only Dirac lobes scatter, and where
-    /// one of the directions does not leave the front.
+    /// The BSDF f [1/sr] between two unit directions on a surface of normal `n`, without the cosine; zero where only
+    /// Dirac lobes scatter, and where one of the directions does not leave the front.
     #[inline]
-    pub fn f(&self, cos_o: f64, cos_i: f64) -> Rgb {
+    pub fn f(&self, n: DVec3, wo: DVec3, wi: DVec3) -> Rgb {
         match *self {
-            Bsdf::Lambert { albedo } if cos_o > 0.0 && cos_i > 0.0 => albedo * FRAC_1_PI,
+            Bsdf::Lambert { albedo } if n.dot(wo) > 0.0 && n.dot(wi) > 0.0 => albedo * FRAC_1_PI,
             _ => Rgb::ZERO,
         }
     }
 
-    /// Density [1/sr] with which [`Bsdf::sample`] draws a direction of the given cosine; `None` for Dirac lobes.
+    /// Density [1/sr] with which [`Bsdf::sample`] draws `wi` for light that goes on towards `wo`; `None` for Dirac lobes.
     #[inline]
-    pub fn pdf(&self, directions: Directions, cos_i: f64) -> Option<PdfW> {
+    pub fn pdf(&self, directions: Directions, n: DVec3, _wo: DVec3, wi: DVec3) -> Option<PdfW> {
+        let cos_i = n.dot(wi);
         match (self.is_dirac(), directions) {
             (true, _) => None,
             (false, _) if cos_i <= 0.0 => Some(PdfW(0.0)),
@@ -120,14 +130,21 @@ impl Bsdf {
         }
     }
 
-    /// Draws a direction around the normal of `frame`, for light that goes on towards `wo`.
+    /// Draws a direction around the normal of `frame`; `wo` is where the path came from.
     #[inline]
-    pub fn sample(&self, directions: Directions, frame: &Frame, wo: DVec3, u: (f64, f64)) -> DirectionSample {
+    pub fn sample(
+        &self,
+        carried: Carried,
+        directions: Directions,
+        frame: &Frame,
+        wo: DVec3,
+        u: (f64, f64),
+    ) -> DirectionSample {
         match *self {
             Bsdf::Lambert { albedo } => lambert(directions, albedo, frame, u),
             Bsdf::Mirror { reflectance } => dirac(mirrored(wo, frame.n), reflectance),
             Bsdf::Conductor { .. } => dirac(mirrored(wo, frame.n), self.albedo(frame.n.dot(wo))),
-            Bsdf::Dielectric { ior } => dielectric(ior, frame.n, wo, u.0),
+            Bsdf::Dielectric { ior } => dielectric(carried, ior, frame.n, wo, u.0),
         }
     }
 }
@@ -149,9 +166,10 @@ fn lambert(directions: Directions, albedo: Rgb, frame: &Frame, u: (f64, f64)) ->
 }
 
 /// Reflection or refraction, chosen with their probabilities by `u`. Refraction squeezes a beam's solid angle by
-/// (n_t / n_i)² and radiance grows by as much, so radiance seen through the interface is divided by it.
+/// (n_t / n_i)² and radiance grows by as much, so radiance seen through the interface is divided by it; the power of a
+/// beam stays what it is [Veach 1997, sec. 5.2].
 #[inline]
-fn dielectric(ior: f64, n: DVec3, wo: DVec3, u: f64) -> DirectionSample {
+fn dielectric(carried: Carried, ior: f64, n: DVec3, wo: DVec3, u: f64) -> DirectionSample {
     let outside = n.dot(wo) > 0.0;
     let (n, eta) = if outside { (n, ior) } else { (-n, 1.0 / ior) };
     let cos = n.dot(wo);
@@ -160,7 +178,11 @@ fn dielectric(ior: f64, n: DVec3, wo: DVec3, u: f64) -> DirectionSample {
         return dirac(mirrored(wo, n), Rgb::ONE);
     }
     let wi = n * (cos / eta - cos_t) - wo * (1.0 / eta);
-    dirac(wi.normalize(), Rgb::splat(1.0 / (eta * eta)))
+    let weight = match carried {
+        Carried::Radiance => 1.0 / (eta * eta),
+        Carried::Power => 1.0,
+    };
+    dirac(wi.normalize(), Rgb::splat(weight))
 }
 
 #[inline]

@@ -18,7 +18,7 @@ pub mod solid_angle;
 pub mod spheres;
 mod surface;
 
-pub use bsdf::{Bsdf, Directions, Material};
+pub use bsdf::{Bsdf, Carried, Directions, Material};
 pub use camera::Sensor;
 pub use geometry::{Ray, Shape};
 pub use light::{LightSample, LightSampling, Pick, PointLight, Points};
