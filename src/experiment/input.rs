@@ -185,7 +185,8 @@ pub fn fractions<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
     swept(d, "a fraction of the sphere's area lies inside (0, 1)", |v| v > 0.0 && v < 1.0)
 }
 
-fn swept<'de, D: Deserializer<'de>>(
+/// Numbers to sweep over, each of which `holds`; `wanted` says what would be right.
+pub fn swept<'de, D: Deserializer<'de>>(
     d: D,
     wanted: &str,
     holds: impl Fn(f64) -> bool,
