@@ -97,8 +97,8 @@ impl Camera {
         let squared = from.length_squared();
         let distance = squared.sqrt();
         let cos = depth / distance;
-        let pixel_area = 4.0 * self.right.length() * self.up.length()
-            / (f64::from(self.width) * f64::from(self.height));
+        let pixel_area =
+            4.0 * self.right.length() * self.up.length() / (f64::from(self.width) * f64::from(self.height));
         is_seen.then(|| Connection {
             to_sensor: from,
             wo: from / distance,

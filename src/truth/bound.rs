@@ -17,7 +17,8 @@ const LISTED: u32 = 64;
 pub fn of(kind: &SceneKind, estimator: &Estimator, channel: usize, counted: Counted) -> Option<f64> {
     let scene = kind.build();
     let clear = scene.surfaces().iter().any(|s| s.material.bsdf.is_clear());
-    if !estimator.is_path_tracer() || clear || (scene.points().next().is_some() && estimator.samples_lights()) {
+    if !estimator.is_path_tracer() || clear || (scene.points().next().is_some() && estimator.samples_lights())
+    {
         return None;
     }
     let response = if matches!(scene.sensor, Sensor::Irradiance { .. }) { PI } else { 1.0 };
