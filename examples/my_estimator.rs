@@ -15,7 +15,12 @@ struct MyPathTracer {
 }
 
 impl Estimate for MyPathTracer {
-    fn estimate(&self, mut ray: Ray, cx: &mut Ctx<'_>) {
+    // what the pixels of one image pass share: nothing
+    type Pass = ();
+
+    fn begin(&self, _: u64, _: &mut Ctx<'_>) {}
+
+    fn estimate(&self, (): &(), mut ray: Ray, cx: &mut Ctx<'_>) {
         let mut beta = Rgb::ONE;
         for bounce in 0.. {
             let Some(x) = cx.hit(&ray) else { return };

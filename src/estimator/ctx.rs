@@ -2,7 +2,7 @@
 //! a ray be traced.
 
 use crate::sampling::{PdfW, Stream};
-use crate::scene::{Carried, Directions, Hit, LightSampling, Ray, Rgb, Scene, Start};
+use crate::scene::{Carried, Directions, Emission, Hit, LightSampling, Ray, Rgb, Scene, Start};
 use glam::DVec3;
 
 /// Bounces 0 to 7 have a bin each; the last bin holds all later ones.
@@ -26,6 +26,8 @@ pub struct Tally {
     pub negative: u64,
     /// Walks cut at [`MAX_RAYS`].
     pub runaway: u64,
+    /// Gathers of the k nearest photons from a map that holds fewer.
+    pub starved: u64,
 }
 
 /// The context of one path.
@@ -40,6 +42,8 @@ pub struct Ctx<'a> {
     response: f64,
     /// The moment at which the path happens.
     time: f64,
+    /// The pixel that it measures.
+    pixel: u32,
     /// The tally's rays at which this path is cut.
     limit: u64,
 }
@@ -72,7 +76,14 @@ impl<'a> Ctx<'a> {
     pub fn new(scene: &'a Scene, stream: Stream, tally: &'a mut Tally, start: &Start) -> Self {
         tally.value = Rgb::ZERO;
         let limit = tally.rays + MAX_RAYS;
-        Ctx { scene, stream, tally, response: start.response, time: start.time, limit }
+        let Start { response, time, pixel, .. } = *start;
+        Ctx { scene, stream, tally, response, time, pixel, limit }
+    }
+
+    /// A context for what the pixels of one realization share.
+    pub fn shared(scene: &'a Scene, stream: Stream, tally: &'a mut Tally) -> Self {
+        let limit = tally.rays + MAX_RAYS;
+        Ctx { scene, stream, tally, response: 1.0, time: 0.0, pixel: 0, limit }
     }
 
     /// The scene.
@@ -85,6 +96,12 @@ impl<'a> Ctx<'a> {
     #[inline]
     pub fn time(&self) -> f64 {
         self.time
+    }
+
+    /// The pixel that the path measures, row by row from the top left.
+    #[inline]
+    pub fn pixel(&self) -> u32 {
+        self.pixel
     }
 
     /// Traces a ray: what it meets first, or `None` for the void and for black backs.
@@ -156,6 +173,40 @@ impl<'a> Ctx<'a> {
     pub fn scatter(&mut self, x: &Hit<'_>, directions: Directions) -> Step {
         let s = x.material.bsdf.sample(Carried::Radiance, directions, &x.frame, x.wo, self.u2());
         Step { ray: x.spawn(s.wi), weight: s.weight, pdf: s.pdf }
+    }
+
+    /// A particle that leaves a light at its own moment; `None` in the dark.
+    #[inline]
+    pub fn emit(&mut self) -> Option<Emission> {
+        self.limit = self.tally.rays + MAX_RAYS;
+        self.time = if self.scene.moves() { self.u1() } else { 0.0 };
+        let (pick, point, direction) = (self.u1(), self.u2(), self.u2());
+        self.scene.emit(self.time, pick, point, direction)
+    }
+
+    /// A direction in which a particle goes on from `x`.
+    #[inline]
+    pub fn scatter_particle(&mut self, x: &Hit<'_>, directions: Directions) -> Step {
+        let s = x.material.bsdf.sample(Carried::Power, directions, &x.frame, x.wo, self.u2());
+        Step { ray: x.spawn(s.wi), weight: s.weight, pdf: s.pdf }
+    }
+
+    /// What the sensor sees of each watt that falls on `x` from `x.wo`, and in which pixel; `None` where it sees nothing.
+    #[inline]
+    pub fn connect(&mut self, x: &Hit<'_>) -> Option<(u32, Rgb)> {
+        let u = self.u2();
+        let way = self.scene.sensor.connect(x.p, u)?;
+        let cos = x.frame.n.dot(way.wo);
+        if cos <= 0.0 || !self.visible(x, way.to_sensor, way.surface) {
+            return None;
+        }
+        Some((way.pixel, x.material.bsdf.f(x.frame.n, way.wo, x.wo) * (cos * way.importance)))
+    }
+
+    /// Notes that a map held fewer photons than were to be gathered.
+    #[inline]
+    pub fn starve(&mut self) {
+        self.tally.starved += 1;
     }
 
     /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface: whether nothing stands between.

@@ -25,8 +25,12 @@ pub struct Explicit {
 }
 
 impl Estimate for Explicit {
+    type Pass = ();
+
+    fn begin(&self, _: u64, _: &mut Ctx<'_>) {}
+
     #[inline]
-    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
+    fn estimate(&self, (): &(), ray: Ray, cx: &mut Ctx<'_>) {
         self.walk(ray, Rgb::ONE, None, 0, cx);
     }
 
@@ -37,7 +41,7 @@ impl Estimate for Explicit {
 
 impl Explicit {
     /// Follows a path of throughput `beta` whose last direction had the density `pdf`.
-    fn walk(&self, mut ray: Ray, mut beta: Rgb, mut pdf: Option<PdfW>, mut bounce: u32, cx: &mut Ctx<'_>) {
+    pub(super) fn walk(&self, mut ray: Ray, mut beta: Rgb, mut pdf: Option<PdfW>, mut bounce: u32, cx: &mut Ctx<'_>) {
         loop {
             let Some(x) = cx.hit(&ray) else { return };
             let weight = self.technique.of_hit(pdf, || cx.light_pdf(&ray, &x, self.lights));

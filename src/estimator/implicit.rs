@@ -19,8 +19,12 @@ pub struct Implicit {
 }
 
 impl Estimate for Implicit {
+    type Pass = ();
+
+    fn begin(&self, _: u64, _: &mut Ctx<'_>) {}
+
     #[inline]
-    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
+    fn estimate(&self, (): &(), ray: Ray, cx: &mut Ctx<'_>) {
         self.walk(ray, Rgb::ONE, 0, cx);
     }
 

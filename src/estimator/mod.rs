@@ -2,15 +2,26 @@
 
 pub mod ctx;
 pub mod explicit;
+pub mod film;
 pub mod implicit;
+pub mod kernel;
+pub mod light_tracing;
 pub mod mis;
+pub mod particles;
+pub mod photon_map;
+pub mod photons;
 pub mod recursive;
 pub mod roulette;
 
 pub use ctx::{BINS, Ctx, Direct, MAX_RAYS, Step, Tally};
 pub use explicit::Explicit;
+pub use film::Film;
 pub use implicit::Implicit;
+pub use kernel::{Gather, Kernel, Last, Rates};
+pub use light_tracing::LightTracing;
 pub use mis::{Heuristic, Technique};
+pub use photon_map::{DirectLight, PhotonMap};
+pub use photons::Photons;
 pub use recursive::Recursive;
 pub use roulette::{Roulette, Rule};
 
@@ -19,15 +30,22 @@ use serde::{Deserialize, Serialize};
 
 /// Something that estimates the radiance arriving along a ray.
 pub trait Estimate: Sync {
-    /// Draws one sample: writes contributions by bounce into `cx`, which also counts its rays.
-    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>);
+    /// What all pixels of one realization share: photons, or what particles have left on the image. `()` for a path
+    /// tracer.
+    type Pass: Sync;
+
+    /// Makes it, for the realization of this number, before the first pixel.
+    fn begin(&self, realization: u64, cx: &mut Ctx<'_>) -> Self::Pass;
+
+    /// Draws one sample of a pixel: writes contributions by bounce into `cx`, which also counts its rays.
+    fn estimate(&self, pass: &Self::Pass, ray: Ray, cx: &mut Ctx<'_>);
 
     /// What it promises; decides which claims are legal.
     fn property(&self) -> Property;
 }
 
 /// What an estimator promises about its mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Property {
     /// The mean is the radiance.
     Unbiased,
@@ -35,6 +53,11 @@ pub enum Property {
     Clamped {
         /// The largest number of scattering events that is counted.
         bounces: u32,
+    },
+    /// The mean is not the radiance, but comes ever nearer to it.
+    Consistent {
+        /// How fast.
+        rates: Rates,
     },
 }
 
@@ -58,6 +81,20 @@ pub enum Estimator {
     Implicit(Implicit),
     /// Direct light sampled on the emitters.
     Explicit(Explicit),
+    /// Particles connected to the sensor.
+    LightTracing(LightTracing),
+    /// The density of photons.
+    PhotonMap(PhotonMap),
+}
+
+/// What the pixels of one realization share.
+pub enum Pass {
+    /// Nothing.
+    Nothing,
+    /// What particles have left on the image.
+    Film(Film),
+    /// Photons.
+    Photons(Photons),
 }
 
 impl Estimator {
@@ -82,9 +119,18 @@ impl Estimator {
         all
     }
 
-    /// Whether it samples points on emitters; one that does not never finds a light without extent.
+    /// Whether its paths follow from the eye, one realization each for a sensor of one pixel.
+    pub fn is_path_tracer(&self) -> bool {
+        !matches!(self, Estimator::LightTracing(_) | Estimator::PhotonMap(_))
+    }
+
+    /// Whether its paths from the eye sample points on emitters.
     pub fn samples_lights(&self) -> bool {
-        matches!(self, Estimator::Explicit(e) if e.technique.samples_lights())
+        match self {
+            Estimator::Explicit(e) => e.technique.samples_lights(),
+            Estimator::PhotonMap(e) => e.direct == DirectLight::Sampled,
+            Estimator::Recursive(_) | Estimator::Implicit(_) | Estimator::LightTracing(_) => false,
+        }
     }
 
     /// The same estimator with another termination rule.
@@ -93,6 +139,8 @@ impl Estimator {
             Estimator::Recursive(e) => Estimator::Recursive(Recursive { roulette, ..e }),
             Estimator::Implicit(e) => Estimator::Implicit(Implicit { roulette, ..e }),
             Estimator::Explicit(e) => Estimator::Explicit(Explicit { roulette, ..e }),
+            Estimator::LightTracing(e) => Estimator::LightTracing(LightTracing { roulette, ..e }),
+            Estimator::PhotonMap(e) => Estimator::PhotonMap(PhotonMap { roulette, ..e }),
         }
     }
 
@@ -102,21 +150,41 @@ impl Estimator {
             Estimator::Recursive(e) => &e.roulette,
             Estimator::Implicit(e) => &e.roulette,
             Estimator::Explicit(e) => &e.roulette,
+            Estimator::LightTracing(e) => &e.roulette,
+            Estimator::PhotonMap(e) => &e.roulette,
         }
     }
 }
 
 impl Estimate for Estimator {
-    #[inline]
-    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
+    type Pass = Pass;
+
+    fn begin(&self, realization: u64, cx: &mut Ctx<'_>) -> Pass {
         match self {
-            Estimator::Recursive(e) => e.estimate(ray, cx),
-            Estimator::Implicit(e) => e.estimate(ray, cx),
-            Estimator::Explicit(e) => e.estimate(ray, cx),
+            Estimator::Recursive(_) | Estimator::Implicit(_) | Estimator::Explicit(_) => Pass::Nothing,
+            Estimator::LightTracing(e) => Pass::Film(e.begin(realization, cx)),
+            Estimator::PhotonMap(e) => Pass::Photons(e.begin(realization, cx)),
+        }
+    }
+
+    #[inline]
+    fn estimate(&self, pass: &Pass, ray: Ray, cx: &mut Ctx<'_>) {
+        match (self, pass) {
+            (Estimator::Recursive(e), _) => e.estimate(&(), ray, cx),
+            (Estimator::Implicit(e), _) => e.estimate(&(), ray, cx),
+            (Estimator::Explicit(e), _) => e.estimate(&(), ray, cx),
+            (Estimator::LightTracing(e), Pass::Film(film)) => e.estimate(film, ray, cx),
+            (Estimator::PhotonMap(e), Pass::Photons(photons)) => e.estimate(photons, ray, cx),
+            (Estimator::LightTracing(_) | Estimator::PhotonMap(_), _) => {
+                unreachable!("a pass of another estimator")
+            }
         }
     }
 
     fn property(&self) -> Property {
-        Property::of(self.roulette())
+        match self {
+            Estimator::PhotonMap(e) => e.property(),
+            _ => Property::of(self.roulette()),
+        }
     }
 }

@@ -21,7 +21,11 @@ pub struct Recursive {
 }
 
 impl Estimate for Recursive {
-    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
+    type Pass = ();
+
+    fn begin(&self, _: u64, _: &mut Ctx<'_>) {}
+
+    fn estimate(&self, (): &(), ray: Ray, cx: &mut Ctx<'_>) {
         self.shade(ray, Rgb::ONE, 0, cx);
     }
 

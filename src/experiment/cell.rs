@@ -133,6 +133,9 @@ pub struct Cell {
     pub negative: u64,
     /// Walks that were cut.
     pub runaway: u64,
+    /// Gathers of the k nearest photons that found fewer.
+    #[serde(default)]
+    pub starved: u64,
     /// Variance of one sample of a pixel, averaged over the image, a value a block; unused for a probe.
     pub pixel_variance: Channels,
     /// Median over the image of the variance of a pixel's sample.
@@ -255,6 +258,7 @@ impl Cell {
         self.non_finite += block.tally.non_finite;
         self.negative += block.tally.negative;
         self.runaway += block.tally.runaway;
+        self.starved += block.tally.starved;
         if block.pixels.is_image() {
             let variance = block.pixels.variance();
             push(&mut self.pixel_variance, variance.iter().sum::<Rgb>() / variance.len() as f64);
@@ -283,14 +287,19 @@ impl Cell {
 
     /// Why nothing can be concluded from this cell, if so.
     pub fn invalid(&self) -> Option<String> {
-        complaint(self.non_finite, self.negative, self.runaway)
+        complaint([self.non_finite, self.negative, self.runaway, self.starved])
     }
 }
 
-/// What is wrong with samples of which so many were not finite or negative, or whose walks were cut.
-pub(super) fn complaint(non_finite: u64, negative: u64, runaway: u64) -> Option<String> {
-    let told = |count: u64, what: &str| (count > 0).then(|| format!("{count} {what}"));
-    told(non_finite, "contributions were not finite")
-        .or_else(|| told(negative, "contributions were negative"))
-        .or_else(|| told(runaway, "walks ran away and were cut"))
+/// What is wrong with samples of which so many were not finite or negative, whose walks were cut, or who looked for
+/// photons that there were not.
+pub(super) fn complaint(counts: [u64; 4]) -> Option<String> {
+    const WHAT: [&str; 4] = [
+        "contributions were not finite",
+        "contributions were negative",
+        "walks ran away and were cut",
+        "times a map held fewer photons than are to be gathered: send more, or lower k",
+    ];
+    let (count, what) = counts.into_iter().zip(WHAT).find(|&(count, _)| count > 0)?;
+    Some(format!("{count} {what}"))
 }

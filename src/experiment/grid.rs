@@ -5,7 +5,7 @@ use super::error::Error;
 use super::making;
 use super::plan::CellPlan;
 use super::spec::{Grid, Spec, Streams};
-use crate::estimator::{Estimate, Estimator, Property, Roulette, Rule};
+use crate::estimator::{Estimator, Roulette, Rule};
 use crate::faults::Fault;
 use crate::sampling::Address;
 use crate::scene::Scene;
@@ -56,7 +56,7 @@ fn grid_cells(
         for estimator in &estimators {
             for roulette in &roulettes {
                 let (untermined, fault) = estimator.choice.value;
-                let whole = untermined.with(roulette.choice.value);
+                let whole = untermined.with(roulette.choice.value, pixels(&built));
                 lit(&whole, &built).map_err(|e| at(scene.span.clone(), e))?;
                 ends(&whole, &built).map_err(|e| at(roulette.span.clone(), e))?;
                 let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
@@ -111,12 +111,16 @@ fn axis<S, T>(
     Ok(all)
 }
 
-/// Direct light can only be sampled where something emits.
+/// Lights can only be sampled where something emits.
 pub(super) fn lit(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
     match estimator {
-        Estimator::Explicit(_) if scene.light_count() == 0 => Err("this scene has no light, and `explicit` \
-             samples lights; give a surface an emission above 0, or use `implicit`"
-            .to_owned()),
+        Estimator::Explicit(_) | Estimator::LightTracing(_) | Estimator::PhotonMap(_)
+            if scene.light_count() == 0 =>
+        {
+            Err("this scene has no light, and this estimator starts from lights; give a surface an emission above 0, \
+                 or use `implicit`"
+                .to_owned())
+        }
         _ => Ok(()),
     }
 }
@@ -162,7 +166,16 @@ fn pixels(scene: &Scene) -> u64 {
 /// Expected rays a realization: by theory, else an upper bound from a closed scene of the largest albedo.
 fn rays(kind: &SceneKind, scene: &Scene, estimator: &Estimator) -> f64 {
     let theory = ClosedForm::of(kind, estimator).and_then(|closed| closed.rays());
-    pixels(scene) as f64 * theory.unwrap_or_else(|| ray_bound(estimator, scene))
+    let walk = || ray_bound(estimator, scene);
+    let pixels = pixels(scene) as f64;
+    match estimator {
+        // a ray and a shadow ray a vertex; one ray for each pixel, and what mirrors show
+        Estimator::LightTracing(e) => 2.0 * e.particles as f64 * walk() + 2.0 * pixels,
+        Estimator::PhotonMap(e) => {
+            e.photons as f64 * walk() + pixels * (2.0 + 2.0 * f64::from(e.final_gather))
+        }
+        _ => pixels * theory.unwrap_or_else(walk),
+    }
 }
 
 fn ray_bound(estimator: &Estimator, scene: &Scene) -> f64 {
@@ -170,20 +183,18 @@ fn ray_bound(estimator: &Estimator, scene: &Scene) -> f64 {
         Estimator::Recursive(e) => (f64::from(e.samples), 1.0),
         Estimator::Implicit(_) => (1.0, 1.0),
         Estimator::Explicit(_) => (1.0, 2.0),
+        Estimator::LightTracing(_) | Estimator::PhotonMap(_) => (1.0, 1.0),
     };
     let roulette = estimator.roulette();
     let settled = branches * largest_q(roulette, scene);
     let mut sum = 1.0;
     let mut reached = 1.0;
-    let last = match estimator.property() {
-        Property::Clamped { bounces } => bounces,
-        Property::Unbiased => roulette.from,
-    };
+    let last = roulette.clamp.unwrap_or(roulette.from);
     for bounce in 0..last {
         reached *= if bounce < roulette.from { branches } else { settled };
         sum += reached;
     }
-    if estimator.property() == Property::Unbiased {
+    if roulette.clamp.is_none() {
         sum += reached * settled / (1.0 - settled);
     }
     per_vertex * sum

@@ -150,7 +150,8 @@ pub fn positive_counts<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Erro
     swept(d, "a whole number from 1 to 1000", |v| v.fract() == 0.0 && (1.0..=1000.0).contains(&v))
 }
 
-fn swept<'de, D: Deserializer<'de>>(
+/// Numbers to sweep over, each of which `holds`; `wanted` says what would be right.
+pub fn swept<'de, D: Deserializer<'de>>(
     d: D,
     wanted: &str,
     holds: impl Fn(f64) -> bool,

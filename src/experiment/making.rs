@@ -45,8 +45,26 @@ pub enum Ended {
 /// Whether no light is out of an estimator's reach: points are found by sampling them only, and not behind mirrors or
 /// glass.
 pub fn finds_all(estimator: &Estimator, scene: &Scene) -> bool {
-    let smooth = scene.surfaces().iter().any(|s| s.material.bsdf.is_dirac());
-    scene.points().next().is_none() || (estimator.samples_lights() && !smooth)
+    let smooth = || scene.surfaces().iter().any(|s| s.material.bsdf.is_dirac());
+    scene.points().next().is_none()
+        || match estimator {
+            Estimator::PhotonMap(_) => true,
+            // particles reach all that the eye sees without a mirror or glass
+            Estimator::LightTracing(_) => !sees_smooth(scene),
+            _ => estimator.samples_lights() && !smooth(),
+        }
+}
+
+/// Whether one of many rays from the sensor meets a mirror or glass first.
+fn sees_smooth(scene: &Scene) -> bool {
+    let (width, height) = scene.sensor.resolution();
+    let rays = 4096 / (width * height).min(4096) + 1;
+    let address = Address::of(&["what the sensor sees"]);
+    let meets = |ray: u32, x: u32, y: u32| {
+        let start = scene.start((x, y), &mut address.stream(u64::from(ray), u64::from(y * width + x)));
+        scene.intersect(&start.ray, start.time).is_some_and(|x| x.material.bsdf.is_dirac())
+    };
+    (0..height).any(|y| (0..width).any(|x| (0..rays).any(|ray| meets(ray, x, y))))
 }
 
 /// A reference without samples.
@@ -133,7 +151,7 @@ fn add(own: &mut Own, blocks: Vec<Block>) -> Result<(), Error> {
     };
     for block in blocks {
         let tally = &block.tally;
-        if let Some(why) = cell::complaint(tally.non_finite, tally.negative, tally.runaway) {
+        if let Some(why) = cell::complaint([tally.non_finite, tally.negative, tally.runaway, tally.starved]) {
             return Err(Error::Refused(format!("no reference can be made of this: {why}")));
         }
         pixels.merge(&block.into_pixels());

@@ -20,6 +20,9 @@ const LOOKS: [u64; 4] = [1, 2, 4, 6];
 /// How many times a cell is looked at, if it may stop early: a t test shares its level among them.
 pub const LOOKS_IN_ALL: u32 = LOOKS.len() as u32 + 1;
 
+/// The pixel whose random numbers are those that all pixels of a realization share.
+const SHARED: u64 = u64::MAX;
+
 /// Runs one cell on the current thread pool, `None` if `stop` was raised before its end. Where `is_decided` says so at
 /// one of the looks, it ends before all of its samples are taken. `progress` is told of the rays traced by each finished
 /// wave.
@@ -95,12 +98,14 @@ pub fn block_of(
     let mut tally = Tally::default();
     for realization in realizations {
         let rays_before = tally.rays;
+        let shared = draw(realization, SHARED);
+        let pass = estimator.begin(realization, &mut Ctx::shared(scene, shared, &mut tally));
         for y in 0..height {
             for x in 0..width {
                 let pixel = u64::from(y) * u64::from(width) + u64::from(x);
                 let mut stream = draw(realization, pixel);
                 let start = scene.start((x, y), &mut stream);
-                estimator.estimate(start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
+                estimator.estimate(&pass, start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
                 block.pixel(pixel as usize, tally.value);
             }
         }

@@ -105,7 +105,11 @@ impl Faulty {
 }
 
 impl Estimate for Faulty {
-    fn estimate(&self, ray: Ray, cx: &mut Ctx<'_>) {
+    type Pass = ();
+
+    fn begin(&self, _: u64, _: &mut Ctx<'_>) {}
+
+    fn estimate(&self, (): &(), ray: Ray, cx: &mut Ctx<'_>) {
         let walk = Walk::of(&self.estimator, self.fault.slip);
         match self.fault.slip {
             Slip::Density(density) => photon::estimate(density, &walk.roulette, &ray, cx),

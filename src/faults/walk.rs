@@ -77,6 +77,8 @@ impl Walk {
             Estimator::Explicit(e) => (e.technique, e.lights, e.directions),
             Estimator::Implicit(e) => (Technique::Direction, LightSampling::AREA, e.directions),
             Estimator::Recursive(e) => (Technique::Direction, LightSampling::AREA, e.directions),
+            Estimator::LightTracing(e) => (Technique::Light, LightSampling::AREA, e.directions),
+            Estimator::PhotonMap(e) => (Technique::Light, LightSampling::AREA, e.directions),
         };
         Walk { slip, technique, lights, directions: slip.believed(directions), roulette }
     }

@@ -24,7 +24,7 @@ fn made_of(estimator: &Estimator) -> Option<(Kind, Directions, Option<LightSampl
             Technique::Direction => (Kind::Direction, e.directions, None),
             Technique::Both(_) => (Kind::Both, e.directions, Some(e.lights)),
         }),
-        Estimator::Recursive(_) => None,
+        Estimator::Recursive(_) | Estimator::LightTracing(_) | Estimator::PhotonMap(_) => None,
     }
 }
 

@@ -1,5 +1,7 @@
 //! What emits: surfaces, points and the sky; how one of them is picked, and how a point on it is drawn.
 
+pub mod emission;
+
 use super::sky::{FAR, SKY, Sky};
 use super::{Hit, Ray, Rgb, Shape, Surface, geometry::NOWHERE, solid_angle};
 use crate::sampling::warp::Frame;
@@ -79,6 +81,9 @@ pub struct LightSample {
 pub struct Lights {
     lights: Vec<Light>,
     sky: Option<Sky>,
+    /// Of a sphere around the scene.
+    center: DVec3,
+    radius: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -99,9 +104,14 @@ struct Light {
 }
 
 impl Lights {
-    /// Collects the emitters of a scene that fits into a sphere of the given radius. A light's power, up to a factor π:
-    /// area x radiance, 4 intensity, and what the sky sends through that sphere.
-    pub fn new(surfaces: &[Surface], points: &[PointLight], sky: Option<Sky>, radius: f64) -> Self {
+    /// Collects the emitters of a scene that fits into the sphere of this centre and radius. A light's power, up to a
+    /// factor π: area x radiance, 4 intensity, and what the sky sends through that sphere.
+    pub fn new(
+        surfaces: &[Surface],
+        points: &[PointLight],
+        sky: Option<Sky>,
+        (center, radius): (DVec3, f64),
+    ) -> Self {
         let of_surface = |(id, s): (usize, &Surface)| {
             let area = s.shape.area();
             (Emitter::Surface(id as u32, PdfA(1.0 / area)), area * s.material.le.element_sum())
@@ -120,7 +130,7 @@ impl Lights {
             cdf += pmf;
             Light { emitter, pmf, cdf }
         };
-        Lights { lights: emitters.into_iter().map(light).collect(), sky }
+        Lights { lights: emitters.into_iter().map(light).collect(), sky, center, radius }
     }
 
     /// How many emitters there are.

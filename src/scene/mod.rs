@@ -6,6 +6,7 @@
 
 pub mod bsdf;
 pub mod camera;
+pub mod connection;
 mod cornell;
 pub mod cornell_flush;
 pub mod fresnel;
@@ -21,7 +22,9 @@ mod surface;
 
 pub use bsdf::{Bsdf, Carried, DirectionSample, Directions, Material};
 pub use camera::Sensor;
+pub use connection::Connection;
 pub use geometry::{Ray, Shape};
+pub use light::emission::Emission;
 pub use light::{LightSample, LightSampling, Pick, PointLight, Points};
 pub use sky::Sky;
 pub use surface::Surface;
@@ -97,6 +100,8 @@ pub struct Start {
     pub response: f64,
     /// The moment at which all of the path happens, in [0, 1) of the exposure.
     pub time: f64,
+    /// The pixel that it measures, row by row from the top left.
+    pub pixel: u32,
 }
 
 impl Scene {
@@ -111,7 +116,8 @@ impl Scene {
             .iter()
             .map(|s| s.shape.bounds())
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
-        let lights = Lights::new(&surfaces, points, sky, 0.5 * (high - low).length());
+        let around = (0.5 * (low + high), 0.5 * (high - low).length());
+        let lights = Lights::new(&surfaces, points, sky, around);
         let rectangles = RectangleLanes::new(&surfaces);
         let spheres = Spheres::new(&surfaces);
         let is_other = |s: &Surface| s.moves() || matches!(s.shape, Shape::Triangle(_) | Shape::Disk(_));
@@ -124,7 +130,8 @@ impl Scene {
     #[inline]
     pub fn start(&self, pixel: (u32, u32), stream: &mut Stream) -> Start {
         let (ray, response) = self.sensor.ray(pixel, stream);
-        Start { ray, response, time: if self.moves { stream.u1() } else { 0.0 } }
+        let time = if self.moves { stream.u1() } else { 0.0 };
+        Start { ray, response, time, pixel: pixel.1 * self.sensor.resolution().0 + pixel.0 }
     }
 
     /// What the ray meets first at `time`: `None` for the void around an open scene and for a back, which is black.
@@ -179,6 +186,18 @@ impl Scene {
     #[inline]
     pub fn light_pdf(&self, how: LightSampling, ray: &Ray, hit: &Hit<'_>, time: f64) -> PdfW {
         self.lights.pdf(&self.surfaces, how, ray, hit, time)
+    }
+
+    /// A particle that leaves a light at `time`; `None` in the dark. See [`Emission`].
+    #[inline]
+    pub fn emit(&self, time: f64, u: f64, v: (f64, f64), w: (f64, f64)) -> Option<Emission> {
+        self.lights.emit(&self.surfaces, time, u, v, w)
+    }
+
+    /// Whether anything moves while the shutter is open.
+    #[inline]
+    pub fn moves(&self) -> bool {
+        self.moves
     }
 
     /// The surfaces in their order.

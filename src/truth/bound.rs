@@ -18,7 +18,8 @@ pub fn of(kind: &SceneKind, estimator: &Estimator, channel: usize, counted: Coun
     let scene = kind.build();
     // a narrow lobe has no f that albedo / π bounds
     let unbounded = |bsdf: Bsdf| bsdf.is_clear() || matches!(bsdf, Bsdf::Glossy { .. });
-    if scene.surfaces().iter().any(|s| unbounded(s.material.bsdf))
+    if !estimator.is_path_tracer()
+        || scene.surfaces().iter().any(|s| unbounded(s.material.bsdf))
         || (scene.points().next().is_some() && estimator.samples_lights())
     {
         return None;
@@ -106,6 +107,8 @@ impl Walk<'_> {
             Estimator::Recursive(e) => e.directions,
             Estimator::Implicit(e) => e.directions,
             Estimator::Explicit(e) => e.directions,
+            Estimator::LightTracing(e) => e.directions,
+            Estimator::PhotonMap(e) => e.directions,
         };
         match directions {
             Directions::Cosine => 1.0,

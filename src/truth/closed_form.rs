@@ -64,7 +64,7 @@ impl ClosedForm {
                 gallery::Theory::Series { mean, missed, variance } => Theory::Series {
                     series: mean(*parameter),
                     missed: missed(*parameter, estimator),
-                    variance: variance(*parameter, estimator),
+                    variance: estimator.is_path_tracer().then(|| variance(*parameter, estimator)).flatten(),
                     steady: steady(setting, estimator),
                 },
                 gallery::Theory::Chain { enclosure, looks_at, tail } => {
@@ -103,6 +103,11 @@ impl ClosedForm {
             Counted::From(k) => self.found(channel, Counted::From(k.max(bounces + 1))),
         };
         self.found(channel, counted) - left_out
+    }
+
+    /// The mean of a density estimate, which blurs what it sees: known where blurring changes nothing.
+    pub fn blurred(&self, _channel: usize, _counted: Counted) -> Option<f64> {
+        None
     }
 
     /// The right value less what this estimator has no way to find.

@@ -53,7 +53,12 @@ fn json(value: &impl Serialize) -> String {
 /// What estimators are called that share their mistakes: those that sample lights, and those that wait for chance,
 /// be it with one walk or with many.
 pub fn kind(estimator: &Estimator) -> &'static str {
-    if estimator.samples_lights() { "explicit" } else { "implicit" }
+    match estimator {
+        Estimator::LightTracing(_) => "light_tracing",
+        Estimator::PhotonMap(_) => "photon_map",
+        _ if estimator.samples_lights() => "explicit",
+        _ => "implicit",
+    }
 }
 
 /// A reference of our own, with the state that further samples can be added to.

@@ -33,6 +33,7 @@ impl<'a> Walk<'a> {
             Estimator::Implicit(e) => (1, e.directions, Technique::Direction, Pick::Power),
             Estimator::Recursive(e) => (e.samples, e.directions, Technique::Direction, Pick::Power),
             Estimator::Explicit(e) => (1, e.directions, e.technique, e.lights.pick),
+            Estimator::LightTracing(_) | Estimator::PhotonMap(_) => return None,
         };
         let pmf = pmf(enclosure, technique, pick);
         let walk = Walk { enclosure, roulette, branches, directions, technique, pmf };

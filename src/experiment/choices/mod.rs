@@ -1,12 +1,15 @@
 //! From what a file says to what it means: each written choice becomes one value for every point of its sweeps.
 
+mod photons;
 mod scene;
 
 pub use scene::scenes;
 
 use super::input::Sweep;
 use super::spec::{EstimatorSpec, RouletteSpec, TechniqueSpec};
-use crate::estimator::{Estimator, Explicit, Heuristic, Implicit, Recursive, Roulette, Rule, Technique};
+use crate::estimator::{
+    Estimator, Explicit, Heuristic, Implicit, LightTracing, PhotonMap, Recursive, Roulette, Rule, Technique,
+};
 use crate::faults::{self, Fault};
 use crate::scene::{Directions, LightSampling, Pick, Points};
 
@@ -53,14 +56,23 @@ pub enum Untermined {
     Implicit(Directions),
     /// See [`Explicit`].
     Explicit(Technique, LightSampling, Directions),
+    /// See [`LightTracing`].
+    LightTracing {
+        /// Particles of one realization; `None` for one a pixel.
+        particles: Option<u64>,
+        /// How directions are drawn.
+        directions: Directions,
+    },
+    /// See [`PhotonMap`], whose rule is still to come.
+    PhotonMap(PhotonMap),
 }
 
 /// An estimator, and the mistake that it makes, if any.
 pub type Tested = (Untermined, Option<&'static Fault>);
 
 impl Untermined {
-    /// The estimator with this rule; a recursion's depth and the rule's clamp both hold.
-    pub fn with(self, roulette: Roulette) -> Estimator {
+    /// The estimator with this rule, for a sensor of so many pixels; a recursion's depth and the rule's clamp both hold.
+    pub fn with(self, roulette: Roulette, pixels: u64) -> Estimator {
         match self {
             Untermined::Recursive { samples, depth, directions } => {
                 let clamp = Some(roulette.clamp.map_or(depth, |clamp| clamp.min(depth)));
@@ -74,6 +86,11 @@ impl Untermined {
             Untermined::Explicit(technique, lights, directions) => {
                 Estimator::Explicit(Explicit { technique, lights, directions, roulette })
             }
+            Untermined::LightTracing { particles, directions } => {
+                let particles = particles.unwrap_or(pixels);
+                Estimator::LightTracing(LightTracing { particles, directions, roulette })
+            }
+            Untermined::PhotonMap(map) => Estimator::PhotonMap(PhotonMap { roulette, ..map }),
         }
     }
 }
@@ -83,12 +100,17 @@ pub fn estimators(spec: &EstimatorSpec, faults: bool) -> Result<Vec<Choice<Teste
     let EstimatorSpec::Fault { name, of } = spec else {
         let tested =
             |c: Choice<Untermined>| Choice { label: c.label, params: c.params, value: (c.value, None) };
-        return Ok(sound(spec).into_iter().map(tested).collect());
+        return Ok(sound(spec)?.into_iter().map(tested).collect());
     };
     if !faults {
         return Err(
             "estimators with a mistake are for files that say `faults = true` at their top".to_owned()
         );
+    }
+    let from_lights =
+        matches!(of.0, EstimatorSpec::LightTracing(_) | EstimatorSpec::PhotonMap(_) | EstimatorSpec::Progressive(_));
+    if from_lights {
+        return Err("faults are those of paths from the eye; `of` names one, such as \"explicit\"".to_owned());
     }
     if matches!(of.0, EstimatorSpec::Fault { .. }) {
         return Err("a fault of a fault; `of` names a sound estimator, such as \"explicit\"".to_owned());
@@ -100,17 +122,20 @@ pub fn estimators(spec: &EstimatorSpec, faults: bool) -> Result<Vec<Choice<Teste
             let label = format!("{} ({})", fault.name, c.label);
             Choice { label, params: c.params, value: (c.value, Some(fault)) }
         };
-        all.extend(sound(&of.0).into_iter().map(faulty));
+        all.extend(sound(&of.0)?.into_iter().map(faulty));
     }
     Ok(all)
 }
 
-fn sound(spec: &EstimatorSpec) -> Vec<Choice<Untermined>> {
+fn sound(spec: &EstimatorSpec) -> Result<Vec<Choice<Untermined>>, String> {
     let uniform = |directions: &Directions| match directions {
         Directions::Cosine => Vec::new(),
         Directions::Uniform => vec!["uniform directions".to_owned()],
     };
-    match spec {
+    Ok(match spec {
+        EstimatorSpec::LightTracing(spec) => photons::light_tracing(spec)?,
+        EstimatorSpec::PhotonMap(spec) => photons::photon_map(spec)?,
+        EstimatorSpec::Progressive(spec) => photons::progressive(spec)?,
         EstimatorSpec::Recursive { samples, depth, directions } => {
             let one = |n: (&'static str, f64, bool), d: (&'static str, f64, bool)| {
                 let value =
@@ -147,7 +172,7 @@ fn sound(spec: &EstimatorSpec) -> Vec<Choice<Untermined>> {
             )]
         }
         EstimatorSpec::Fault { .. } => Vec::new(),
-    }
+    })
 }
 
 /// The termination rules that `spec` means.

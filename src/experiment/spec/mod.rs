@@ -2,12 +2,14 @@
 
 mod claim;
 mod null;
+mod photons;
 mod primitives;
 mod scene;
 mod walk;
 
 pub use claim::{Claim, Limits, Plot, Quantity};
 pub use null::NullSpec;
+pub use photons::{LightTracingSpec, PhotonMapSpec, ProgressiveSpec};
 pub use primitives::{BsdfSpec, PointSpec, PrimitiveSpec, PrimitivesSpec, SensorSpec, ShapeSpec, SkySpec};
 pub use scene::{FlushSpec, FurnaceSpec, LooksAt, SceneSpec, SphereSpec};
 pub use walk::{EstimatorSpec, FaultNames, RouletteSpec, TechniqueSpec};

@@ -1,5 +1,6 @@
 //! Estimators and termination rules as files write them.
 
+use super::photons::{LightTracingSpec, PhotonMapSpec, ProgressiveSpec};
 use crate::estimator::Heuristic;
 use crate::experiment::input::{self, Named, Sweep};
 use crate::scene::{Directions, Pick, Points};
@@ -45,6 +46,12 @@ pub enum EstimatorSpec {
         #[serde(default)]
         directions: Directions,
     },
+    /// Particles connected to the sensor.
+    LightTracing(LightTracingSpec),
+    /// The density of photons.
+    PhotonMap(PhotonMapSpec),
+    /// A sequence of photon maps whose radius shrinks.
+    Progressive(ProgressiveSpec),
     /// An estimator with a known mistake; see [`crate::faults`].
     Fault {
         /// Which mistake.

@@ -58,7 +58,7 @@ impl Closed {
         let (technique, lights, directions) = match estimator {
             Estimator::Explicit(e) => (e.technique, e.lights, e.directions),
             Estimator::Implicit(e) => (Technique::Direction, LightSampling::AREA, e.directions),
-            Estimator::Recursive(_) => return None,
+            Estimator::Recursive(_) | Estimator::LightTracing(_) | Estimator::PhotonMap(_) => return None,
         };
         let roulette = estimator.roulette();
         let simple = roulette.from == 0 && !matches!(roulette.rule, Rule::None | Rule::Throughput { .. });

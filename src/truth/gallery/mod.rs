@@ -181,7 +181,7 @@ fn cosine_without_roulette(estimator: &Estimator) -> bool {
                 && e.directions == Directions::Cosine
                 && one_sample(&e.roulette)
         }
-        Estimator::Recursive(_) => false,
+        Estimator::Recursive(_) | Estimator::LightTracing(_) | Estimator::PhotonMap(_) => false,
     }
 }
 
@@ -203,7 +203,7 @@ fn by_chance(estimator: &Estimator, form_factor: f64, albedo: Rgb, le: Rgb) -> O
         Estimator::Recursive(e) => (f64::from(e.samples), e.directions, e.roulette),
         Estimator::Implicit(e) => (1.0, e.directions, e.roulette),
         Estimator::Explicit(e) if e.technique == Technique::Direction => (1.0, e.directions, e.roulette),
-        Estimator::Explicit(_) => return None,
+        Estimator::Explicit(_) | Estimator::LightTracing(_) | Estimator::PhotonMap(_) => return None,
     };
     let q = roulette.q(0, Rgb::ONE, albedo);
     if directions != Directions::Cosine || !(q > 0.0 && q <= 1.0) || !roulette.reaches(1) {
