@@ -12,7 +12,7 @@ mod chi_square;
 use chi_square::assert_follows;
 use furnace::sampling::warp::Frame;
 use furnace::sampling::{Address, PdfW};
-use furnace::scene::{Bsdf, Directions, Rgb};
+use furnace::scene::{Bsdf, Carried, Directions, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -35,6 +35,11 @@ fn across(n: DVec3) -> (DVec3, DVec3) {
     (s, n.cross(s))
 }
 
+/// A unit vector whose cosine to z is exactly this.
+fn leaving(cos: f64) -> DVec3 {
+    DVec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
+}
+
 /// The mean over the cells of the unit square.
 fn mean(cells: u32, f: impl Fn((f64, f64)) -> Rgb) -> Rgb {
     let at = |i: u32| (f64::from(i) + 0.5) / f64::from(cells);
@@ -50,13 +55,13 @@ fn weight_times_pdf_is_f_cos() {
     for (way, n) in cases() {
         let wo = (n + 0.3 * across(n).0).normalize();
         for &u in &points {
-            let s = LAMBERT.sample(way, &Frame::around(n), wo, u);
+            let s = LAMBERT.sample(Carried::Radiance, way, &Frame::around(n), wo, u);
             let (cos, PdfW(pdf)) = (s.wi.dot(n), s.pdf.expect("a density"));
             // cos is rounded once more on its way through the frame: by some epsilons of 1, however small it is
-            let f_cos = LAMBERT.f(wo.dot(n), cos) * cos;
+            let f_cos = LAMBERT.f(n, wo, s.wi) * cos;
             let error = s.weight * pdf - f_cos;
             assert!(error.abs().max_element() < 2.0 * f64::EPSILON, "{way:?} {n} {u:?}: {error}");
-            let asked = LAMBERT.pdf(way, cos).unwrap().0;
+            let asked = LAMBERT.pdf(way, n, wo, s.wi).unwrap().0;
             assert!(cos <= 0.0 || (asked - pdf).abs() < 2.0 * f64::EPSILON, "{way:?} {u:?}: {asked} {pdf}");
             let length = s.wi.length_squared();
             assert!((length - 1.0).abs() < 8.0 * f64::EPSILON && cos > -2.0 * f64::EPSILON, "{s:?}");
@@ -75,7 +80,7 @@ fn directions_follow_their_pdf() {
         let cell = |x: f64| ((x * SIDE as f64) as usize).min(SIDE - 1);
         let (mut counts, mut lost) = (vec![0u64; SIDE * SIDE], 0);
         for _ in 0..N {
-            let wi = LAMBERT.sample(way, &frame, n, stream.u2()).wi;
+            let wi = LAMBERT.sample(Carried::Radiance, way, &frame, n, stream.u2()).wi;
             let cos = wi.dot(n);
             if !(wi.is_finite() && cos > 0.0) {
                 lost += 1;
@@ -86,8 +91,9 @@ fn directions_follow_their_pdf() {
         }
         let solid_angle = TAU / (SIDE * SIDE) as f64;
         let middle = |i: usize| ((i / SIDE) as f64 + 0.5) / SIDE as f64;
-        let probability: Vec<f64> =
-            (0..SIDE * SIDE).map(|i| LAMBERT.pdf(way, middle(i)).unwrap().0 * solid_angle).collect();
+        let probability: Vec<f64> = (0..SIDE * SIDE)
+            .map(|i| LAMBERT.pdf(way, DVec3::Z, DVec3::Z, leaving(middle(i))).unwrap().0 * solid_angle)
+            .collect();
         assert_follows(&name, &counts, lost, &probability, 1e-9);
     }
 }
@@ -97,11 +103,11 @@ fn directions_follow_their_pdf() {
 fn f_is_albedo_over_pi_and_reciprocal() {
     let cosines = [-1.0, -0.3, -f64::MIN_POSITIVE, 0.0, f64::MIN_POSITIVE, 1e-9, 0.2, 0.7, 1.0];
     for (o, i) in cosines.into_iter().flat_map(|o| cosines.map(|i| (o, i))) {
-        let f = LAMBERT.f(o, i);
-        assert_eq!(f, LAMBERT.f(i, o), "{o} {i}");
+        let f = LAMBERT.f(DVec3::Z, leaving(o), leaving(i));
+        assert_eq!(f, LAMBERT.f(DVec3::Z, leaving(i), leaving(o)), "{o} {i}");
         let expected = if o > 0.0 && i > 0.0 { ALBEDO * FRAC_1_PI } else { Rgb::ZERO };
         assert!((f - expected).abs().max_element() < f64::EPSILON, "{o} {i}: {f}");
-        let pdf = WAYS.map(|way| LAMBERT.pdf(way, i).unwrap().0);
+        let pdf = WAYS.map(|way| LAMBERT.pdf(way, DVec3::Z, leaving(o), leaving(i)).unwrap().0);
         assert_eq!(pdf.map(|pdf| pdf > 0.0), [i > 0.0; 2], "a density below the horizon: {i} {pdf:?}");
     }
 }
@@ -113,11 +119,11 @@ fn a_surface_reflects_its_albedo_and_no_more() {
     const CELLS: u32 = 16; // few terms, so that their sum errs by less than 1e-13
     let frame = Frame::around(NORMALS[0]);
     for way in WAYS {
-        let energy = mean(CELLS, |u| LAMBERT.sample(way, &frame, NORMALS[0], u).weight);
+        let energy = mean(CELLS, |u| LAMBERT.sample(Carried::Radiance, way, &frame, NORMALS[0], u).weight);
         assert!((energy - ALBEDO).abs().max_element() < 1e-13, "{way:?}: {energy}");
     }
     for cos_o in [1e-3, 0.4, 1.0] {
-        let reflected = mean(CELLS, |(cos, _)| LAMBERT.f(cos_o, cos) * cos * TAU);
+        let reflected = mean(CELLS, |(cos, _)| LAMBERT.f(DVec3::Z, leaving(cos_o), leaving(cos)) * cos * TAU);
         assert!((reflected - LAMBERT.albedo(cos_o)).abs().max_element() < 1e-13, "{reflected}");
         assert!(reflected.max_element() <= 1.0 && LAMBERT.albedo(cos_o) == ALBEDO);
     }

@@ -161,6 +161,11 @@ fn same_material(shape: &Node, material: &Material) {
         Bsdf::Conductor { eta, k } => {
             assert_eq!((bsdf.kind(), bsdf.triple("eta"), bsdf.triple("k")), ("conductor", eta, k));
         }
+        Bsdf::Glossy { alpha, eta, k } => {
+            // Mitsuba's own default is another distribution
+            assert_eq!((bsdf.kind(), bsdf.get("distribution")), ("roughconductor", "ggx"));
+            assert_eq!((bsdf.number("alpha"), bsdf.triple("eta"), bsdf.triple("k")), (alpha, eta, k));
+        }
         Bsdf::Dielectric { ior } => {
             assert_eq!((bsdf.kind(), bsdf.number("int_ior") / bsdf.number("ext_ior")), ("dielectric", ior));
         }
@@ -281,7 +286,7 @@ fn shapes() -> [Shape; 6] {
     ]
 }
 
-fn materials() -> [Material; 5] {
+fn materials() -> [Material; 6] {
     let (eta, k) = (at(0.2, 1.0 / 3.0, 1.5), at(3.9, 2.4, 0.0));
     let of = |bsdf| Material { bsdf, le: Rgb::ZERO };
     [
@@ -290,6 +295,7 @@ fn materials() -> [Material; 5] {
         of(Bsdf::Mirror { reflectance: at(0.9, 0.8, 1.0) }),
         of(Bsdf::Conductor { eta, k }),
         of(Bsdf::Dielectric { ior: 1.5 }),
+        of(Bsdf::Glossy { alpha: 0.1, eta, k }),
     ]
 }
 

@@ -56,10 +56,10 @@ impl Roulette {
     }
 
     /// Expected number of continuations from a vertex with `albedo`, reached after `bounce` scattering events with
-    /// throughput `beta`; 0 where albedo is 0, because nothing goes on.
+    /// throughput `beta`; 0 where either is 0, because nothing goes on.
     #[inline]
     pub fn q(&self, bounce: u32, beta: Rgb, albedo: Rgb) -> f64 {
-        if albedo == Rgb::ZERO {
+        if albedo == Rgb::ZERO || beta == Rgb::ZERO {
             return 0.0;
         }
         if bounce < self.from {

@@ -1,5 +1,9 @@
 //! Reading what a user wrote: each wrong value is refused where it stands, with what would be right.
 
+mod scene;
+
+pub use scene::*;
+
 use crate::scene::Rgb;
 use serde::de::value::{MapAccessDeserializer, MapDeserializer};
 use serde::de::{DeserializeOwned, Error as _, MapAccess, SeqAccess, Visitor};
@@ -129,35 +133,6 @@ fn check<E: serde::de::Error>(holds: bool, value: impl fmt::Display, wanted: &st
     if holds { Ok(()) } else { Err(E::custom(format!("{value} is out of range: {wanted}"))) }
 }
 
-/// Albedo: each channel in [0, 1].
-pub fn albedo<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
-    let rgb = PerChannel::deserialize(d)?.0;
-    let wanted = "an albedo lies in [0, 1]; more would create energy";
-    rgb.to_array().iter().try_for_each(|&v| check((0.0..=1.0).contains(&v), v, wanted))?;
-    Ok(rgb)
-}
-
-/// As [`albedo`], where the key may be absent.
-pub fn optional_albedo<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Rgb>, D::Error> {
-    albedo(d).map(Some)
-}
-
-/// A part of a refractive index: each channel finite and not negative.
-pub fn index<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
-    let rgb = PerChannel::deserialize(d)?.0;
-    let wanted = "a refractive index is finite and not negative";
-    rgb.to_array().iter().try_for_each(|&v| check(v.is_finite() && v >= 0.0, v, wanted))?;
-    Ok(rgb)
-}
-
-/// Radiance [W m^-2 sr^-1]: each channel finite and not negative.
-pub fn radiance<'de, D: Deserializer<'de>>(d: D) -> Result<Rgb, D::Error> {
-    let rgb = PerChannel::deserialize(d)?.0;
-    let wanted = "emitted radiance is finite and not negative";
-    rgb.to_array().iter().try_for_each(|&v| check(v.is_finite() && v >= 0.0, v, wanted))?;
-    Ok(rgb)
-}
-
 /// Survival or splitting: q > 0, finite.
 pub fn survival<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
     let wanted = "q is the expected number of continuations, a finite number above 0 \
@@ -173,16 +148,6 @@ pub fn counts<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
 /// Whole numbers from 1, to sweep over.
 pub fn positive_counts<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
     swept(d, "a whole number from 1 to 1000", |v| v.fract() == 0.0 && (1.0..=1000.0).contains(&v))
-}
-
-/// Tiles of the Cornell box, to sweep over: 1 to 6.
-pub fn tiles<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
-    swept(d, "a tile has a number from 1 to 6", |v| v.fract() == 0.0 && (1.0..=6.0).contains(&v))
-}
-
-/// Fractions of an area, to sweep over: inside (0, 1).
-pub fn fractions<'de, D: Deserializer<'de>>(d: D) -> Result<Sweep, D::Error> {
-    swept(d, "a fraction of the sphere's area lies inside (0, 1)", |v| v > 0.0 && v < 1.0)
 }
 
 /// Numbers to sweep over, each of which `holds`; `wanted` says what would be right.
@@ -224,27 +189,6 @@ pub fn probability<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     Ok(v)
 }
 
-/// A length: finite and positive.
-pub fn length<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
-    let v = f64::deserialize(d)?;
-    check(v > 0.0 && v.is_finite(), v, "a length is finite and positive")?;
-    Ok(v)
-}
-
-/// A refractive index relative to another: finite and positive.
-pub fn relative_index<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
-    let v = f64::deserialize(d)?;
-    check(v > 0.0 && v.is_finite(), v, "a relative refractive index is finite and positive")?;
-    Ok(v)
-}
-
-/// An exponent of a cosine.
-pub fn exponent<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
-    let v = f64::deserialize(d)?;
-    check((0.0..=1e6).contains(&v), v, "an exponent lies in 0 to 1000000")?;
-    Ok(v)
-}
-
 /// More realizations than this are a slip of the finger.
 pub const MOST_SAMPLES: i64 = 1_000_000_000_000_000;
 
@@ -270,31 +214,4 @@ pub fn samples<'de, D: Deserializer<'de>>(d: D) -> Result<u64, D::Error> {
 /// As [`samples`], where the key may be absent.
 pub fn optional_samples<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u64>, D::Error> {
     samples(d).map(Some)
-}
-
-/// Pixels along an image's edge: 1 to 4096.
-pub fn resolution<'de, D: Deserializer<'de>>(d: D) -> Result<u32, D::Error> {
-    let v = i64::deserialize(d)?;
-    check((1..=4096).contains(&v), v, "a resolution lies in 1 to 4096 pixels")?;
-    Ok(v as u32)
-}
-
-/// A point or vector: three finite numbers.
-pub fn vector<'de, D: Deserializer<'de>>(d: D) -> Result<glam::DVec3, D::Error> {
-    let v = <[f64; 3]>::deserialize(d)?;
-    v.iter().try_for_each(|&x| check(x.is_finite(), x, "coordinates are finite"))?;
-    Ok(v.into())
-}
-
-/// A direction: three finite numbers, not all zero; normalized here.
-pub fn direction<'de, D: Deserializer<'de>>(d: D) -> Result<glam::DVec3, D::Error> {
-    let v = vector(d)?;
-    v.try_normalize().ok_or_else(|| D::Error::custom("a direction must not be the zero vector"))
-}
-
-/// A field of view in degrees.
-pub fn field_of_view<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
-    let v = f64::deserialize(d)?;
-    check(v > 0.0 && v < 180.0, v, "a field of view lies inside (0, 180) degrees")?;
-    Ok(v)
 }

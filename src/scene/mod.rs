@@ -14,12 +14,13 @@ pub mod geometry;
 pub mod lanes;
 pub mod library;
 pub mod light;
+pub mod microfacet;
 pub mod sky;
 pub mod solid_angle;
 pub mod spheres;
 mod surface;
 
-pub use bsdf::{Bsdf, Carried, Directions, Material};
+pub use bsdf::{Bsdf, Carried, DirectionSample, Directions, Material};
 pub use camera::Sensor;
 pub use connection::Connection;
 pub use geometry::{Ray, Shape};

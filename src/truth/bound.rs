@@ -16,8 +16,11 @@ const LISTED: u32 = 64;
 /// No sample of `estimator` in a scene exceeds it: radiance [W m^-2 sr^-1], or irradiance [W m^-2] on a plate.
 pub fn of(kind: &SceneKind, estimator: &Estimator, channel: usize, counted: Counted) -> Option<f64> {
     let scene = kind.build();
-    let clear = scene.surfaces().iter().any(|s| s.material.bsdf.is_clear());
-    if !estimator.is_path_tracer() || clear || (scene.points().next().is_some() && estimator.samples_lights())
+    // a narrow lobe has no f that albedo / π bounds
+    let unbounded = |bsdf: Bsdf| bsdf.is_clear() || matches!(bsdf, Bsdf::Glossy { .. });
+    if !estimator.is_path_tracer()
+        || scene.surfaces().iter().any(|s| unbounded(s.material.bsdf))
+        || (scene.points().next().is_some() && estimator.samples_lights())
     {
         return None;
     }
@@ -118,7 +121,7 @@ impl Walk<'_> {
         let albedo = |bsdf: &Bsdf| match *bsdf {
             Bsdf::Lambert { albedo } => albedo,
             Bsdf::Mirror { reflectance } => reflectance,
-            Bsdf::Conductor { .. } | Bsdf::Dielectric { .. } => Rgb::ONE,
+            Bsdf::Conductor { .. } | Bsdf::Glossy { .. } | Bsdf::Dielectric { .. } => Rgb::ONE,
         };
         let albedos = self.scene.surfaces().iter().map(|s| albedo(&s.material.bsdf));
         albedos.filter(|a| *a != Rgb::ZERO).map(of).fold(0.0, f64::max)

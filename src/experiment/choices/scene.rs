@@ -149,10 +149,13 @@ fn primitive(spec: &PrimitiveSpec) -> Result<Primitive, String> {
         }
         (albedo, None) => Bsdf::Lambert { albedo: albedo.unwrap_or(Rgb::ZERO) },
         (None, Some(BsdfSpec::Mirror { reflectance })) => Bsdf::Mirror { reflectance },
-        (None, Some(BsdfSpec::Conductor { eta, k })) if (eta + k).min_element() <= 0.0 => {
-            return Err("eta and k of a conductor must not both be 0".to_owned());
+        (None, Some(BsdfSpec::Conductor { eta, k } | BsdfSpec::Glossy { eta, k, .. }))
+            if (eta + k).min_element() <= 0.0 =>
+        {
+            return Err("eta and k of a metal must not both be 0".to_owned());
         }
         (None, Some(BsdfSpec::Conductor { eta, k })) => Bsdf::Conductor { eta, k },
+        (None, Some(BsdfSpec::Glossy { alpha, eta, k })) => Bsdf::Glossy { alpha, eta, k },
         (None, Some(BsdfSpec::Dielectric { ior })) => Bsdf::Dielectric { ior },
     };
     let material = Material { bsdf, le: spec.emission };

@@ -64,6 +64,18 @@ pub enum BsdfSpec {
         #[serde(deserialize_with = "input::index")]
         k: Rgb,
     },
+    /// A rough metal.
+    Glossy {
+        /// Roughness of the GGX distribution.
+        #[serde(deserialize_with = "input::roughness")]
+        alpha: f64,
+        /// Real part of the refractive index.
+        #[serde(deserialize_with = "input::index")]
+        eta: Rgb,
+        /// Imaginary part.
+        #[serde(deserialize_with = "input::index")]
+        k: Rgb,
+    },
     /// A clear interface, seen from both sides.
     Dielectric {
         /// Refractive index behind it, relative to the one in front.

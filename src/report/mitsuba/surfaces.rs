@@ -88,6 +88,11 @@ fn bsdf(material: &Material) -> Result<Element, String> {
         Bsdf::Conductor { eta, k } => {
             Element::plugin("bsdf", "conductor").triple("rgb", "eta", eta).triple("rgb", "k", k)
         }
+        Bsdf::Glossy { alpha, eta, k } => Element::plugin("bsdf", "roughconductor")
+            .set("string", "distribution", "ggx")
+            .number("alpha", alpha)
+            .triple("rgb", "eta", eta)
+            .triple("rgb", "k", k),
         Bsdf::Dielectric { .. } if material.le != Rgb::ZERO => {
             return Err("a clear interface emits to both sides here and to its front in Mitsuba; \
                         one that emits cannot be exported"
