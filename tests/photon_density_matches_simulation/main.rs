@@ -5,6 +5,8 @@
 //! at most that, and 5.5 are the limit, which chance exceeds with probability 4e-8.
 
 mod common;
+mod edge;
+mod gradient;
 mod kernel;
 mod nearest;
 mod sphere;

@@ -5,6 +5,8 @@
 //! `power · K(d)`, where the [`Kernel`] has unit integral over the disc; k nearest neighbours take r from the photons.
 //! "Factor" is always expected estimate / truth, 1 for an unbiased estimate.
 
+pub mod edge;
+pub mod gradient;
 mod kernel;
 pub mod nearest;
 mod sphere;
