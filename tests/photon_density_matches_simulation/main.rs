@@ -9,4 +9,6 @@ mod edge;
 mod gradient;
 mod kernel;
 mod nearest;
+mod optimum;
+mod progressive;
 mod sphere;

@@ -9,6 +9,8 @@ pub mod edge;
 pub mod gradient;
 mod kernel;
 pub mod nearest;
+pub mod optimum;
+pub mod progressive;
 mod sphere;
 
 pub use kernel::Kernel;
