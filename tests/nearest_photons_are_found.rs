@@ -10,8 +10,7 @@ use furnace::scene::{Hit, Material, Rgb};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-const WHITE: Material =
-    Material { bsdf: furnace::scene::Bsdf::Lambert { albedo: Rgb::ONE }, le: Rgb::ZERO };
+const WHITE: Material = Material { bsdf: furnace::scene::Bsdf::Lambert { albedo: Rgb::ONE }, le: Rgb::ZERO };
 
 /// A photon whose power is its number, so that it can be told from others.
 fn numbered(number: usize, p: DVec3) -> (DVec3, Photon) {
@@ -55,9 +54,8 @@ fn the_k_nearest() {
     let mut stream = Address::of(&["nearest"]).stream(0, 0);
     for (name, n) in ALL.iter().flat_map(|name| [1000, 20_000].map(|n| (*name, n))) {
         let places = places(name, n, &mut stream);
-        for (k, last) in [2, 7, 12, 13, 100, 500, 1000]
-            .into_iter()
-            .flat_map(|k| [(k, Last::Counted), (k, Last::LeftOut)])
+        for (k, last) in
+            [2, 7, 12, 13, 100, 500, 1000].into_iter().flat_map(|k| [(k, Last::Counted), (k, Last::LeftOut)])
         {
             let map = map(&places, Gather::Nearest { k, last });
             for i in 0..8 {
@@ -97,7 +95,7 @@ fn all_within_a_radius() {
                 let right = by_search(&places, p).into_iter().filter(|d| *d <= radius * radius).count();
                 let near = map.near(p).expect("a radius finds what there is");
                 assert_eq!(near.photons().count(), right, "{name} {radius}");
-                assert_eq!(near.area(), PI * radius * radius);
+                assert_eq!(near.area(), PI * (radius * radius));
             }
         }
     }

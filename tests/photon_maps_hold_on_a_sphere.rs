@@ -1,9 +1,7 @@
 //! Inside a uniform sphere photons are uniform, and the part within a chord is a disk's area: there a photon map has its
 //! closed form for every kernel and radius, by the light's every bounce.
 
-use furnace::estimator::{
-    BINS, DirectLight, Estimator, Gather, Kernel, Last, PhotonMap, Roulette, Rule,
-};
+use furnace::estimator::{BINS, DirectLight, Estimator, Gather, Kernel, Last, PhotonMap, Roulette, Rule};
 use furnace::experiment::Cell;
 use furnace::experiment::run::sample;
 use furnace::sampling::Address;
@@ -44,14 +42,13 @@ fn holds(kind: &SceneKind, map: PhotonMap, samples: u64, factor: f64, share: f64
     for channel in 0..3 {
         let whole = closed.truth(channel, Counted::All);
         for bin in 0..BINS {
-            let counted =
-                if bin + 1 == BINS { Counted::From(bin as u32) } else { Counted::Only(bin as u32) };
+            let counted = if bin + 1 == BINS { Counted::From(bin as u32) } else { Counted::Only(bin as u32) };
             let sampled = bin == 1 && map.direct == DirectLight::Sampled;
             let factor = if bin == 0 || sampled { 1.0 } else { factor };
             let right = factor * closed.truth(channel, counted);
             let found = cell.bounces[bin][channel];
             let slack = 5.0 * found.std_error().unwrap() + 1e-9 * right;
-            assert!((found.mean - right).abs() < slack, "{map:?} {bin}: {} {right} ± {slack}", found.mean);
+            assert!((found.mean - right).abs() <= slack, "{map:?} {bin}: {} {right} ± {slack}", found.mean);
             assert!(slack < share * whole, "{map:?} {bin}: {slack} of {whole} could not tell");
         }
     }
@@ -60,7 +57,7 @@ fn holds(kind: &SceneKind, map: PhotonMap, samples: u64, factor: f64, share: f64
 #[test]
 fn any_kernel_within_a_radius() {
     for kernel in [Kernel::Box, Kernel::Cone { c: 1.0 }, Kernel::Cone { c: 1.3 }, Kernel::Epanechnikov] {
-        holds(&furnace(), by_radius(kernel), 40_000, 1.0, 0.02);
+        holds(&furnace(), by_radius(kernel), 20_000, 1.0, 0.03);
     }
 }
 
@@ -71,7 +68,7 @@ fn the_nearest_without_the_last() {
         gather: Gather::Nearest { k, last: Last::LeftOut },
         ..by_radius(Kernel::Box)
     };
-    holds(&furnace(), map(5), 40_000, 1.0, 0.02);
+    holds(&furnace(), map(5), 20_000, 1.0, 0.03);
     holds(&furnace(), map(40), 10_000, 1.0, 0.02);
 }
 
@@ -85,9 +82,9 @@ fn the_nearest_with_the_last() {
 #[test]
 fn direct_light_sampled_and_final_gathering() {
     let direct = PhotonMap { direct: DirectLight::Sampled, ..by_radius(Kernel::Box) };
-    holds(&furnace(), direct, 40_000, 1.0, 0.02);
+    holds(&furnace(), direct, 20_000, 1.0, 0.03);
     for map in [direct, by_radius(Kernel::Box)] {
-        holds(&furnace(), PhotonMap { final_gather: 3, ..map }, 40_000, 1.0, 0.02);
+        holds(&furnace(), PhotonMap { final_gather: 3, ..map }, 20_000, 1.0, 0.03);
     }
 }
 
@@ -104,7 +101,7 @@ fn patches_do_not_matter_within_a_radius() {
         looks_at: 1,
         view: View::Probe,
     };
-    holds(&kind, by_radius(Kernel::Epanechnikov), 60_000, 1.0, 0.03);
+    holds(&kind, by_radius(Kernel::Epanechnikov), 30_000, 1.0, 0.04);
 }
 
 /// A clamp leaves out light of later bounces, from photons too.

@@ -257,7 +257,11 @@ fn each_sample(scene: &Scene, estimator: &Estimator, check: impl Fn(&Tally)) {
     for i in 0..1000 {
         let mut tally = Tally::default();
         let stream = Address::of(&["techniques_agree", "each"]).stream(i, 0);
-        estimator.estimate(&(), ray, &mut Ctx::new(scene, stream, &mut tally, &start));
+        estimator.estimate(
+            &furnace::estimator::Pass::Nothing,
+            ray,
+            &mut Ctx::new(scene, stream, &mut tally, &start),
+        );
         check(&tally);
     }
 }

@@ -72,3 +72,13 @@ impl Kernel {
         }
     }
 }
+
+impl From<crate::estimator::Kernel> for Kernel {
+    fn from(kernel: crate::estimator::Kernel) -> Self {
+        match kernel {
+            crate::estimator::Kernel::Box => Kernel::Box,
+            crate::estimator::Kernel::Cone { c } => Kernel::Cone { c },
+            crate::estimator::Kernel::Epanechnikov => Kernel::Epanechnikov,
+        }
+    }
+}
