@@ -41,7 +41,14 @@ impl Estimate for Explicit {
 
 impl Explicit {
     /// Follows a path of throughput `beta` whose last direction had the density `pdf`.
-    pub(super) fn walk(&self, mut ray: Ray, mut beta: Rgb, mut pdf: Option<PdfW>, mut bounce: u32, cx: &mut Ctx<'_>) {
+    pub(super) fn walk(
+        &self,
+        mut ray: Ray,
+        mut beta: Rgb,
+        mut pdf: Option<PdfW>,
+        mut bounce: u32,
+        cx: &mut Ctx<'_>,
+    ) {
         loop {
             let Some(x) = cx.hit(&ray) else { return };
             let weight = self.technique.of_hit(pdf, || cx.light_pdf(&ray, &x, self.lights));

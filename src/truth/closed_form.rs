@@ -74,6 +74,7 @@ impl ClosedForm {
             SceneKind::CornellBox { .. }
             | SceneKind::CornellEmpty { .. }
             | SceneKind::CornellFlush { .. }
+            | SceneKind::Lecture(_)
             | SceneKind::Custom { .. } => return None,
         };
         Some(ClosedForm { theory, estimator: *estimator })

@@ -1,5 +1,6 @@
 //! From what a file says to what it means: each written choice becomes one value for every point of its sweeps.
 
+mod lecture;
 mod photons;
 mod scene;
 
@@ -107,8 +108,10 @@ pub fn estimators(spec: &EstimatorSpec, faults: bool) -> Result<Vec<Choice<Teste
             "estimators with a mistake are for files that say `faults = true` at their top".to_owned()
         );
     }
-    let from_lights =
-        matches!(of.0, EstimatorSpec::LightTracing(_) | EstimatorSpec::PhotonMap(_) | EstimatorSpec::Progressive(_));
+    let from_lights = matches!(
+        of.0,
+        EstimatorSpec::LightTracing(_) | EstimatorSpec::PhotonMap(_) | EstimatorSpec::Progressive(_)
+    );
     if from_lights {
         return Err("faults are those of paths from the eye; `of` names one, such as \"explicit\"".to_owned());
     }

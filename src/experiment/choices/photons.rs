@@ -12,9 +12,8 @@ type Point = (&'static str, f64, bool);
 pub fn light_tracing(spec: &LightTracingSpec) -> Chosen {
     let details = uniform(spec.directions);
     let value = |particles| Untermined::LightTracing { particles, directions: spec.directions };
-    let one = |params: Vec<Point>, particles| {
-        Choice::new("light_tracing", &details, params, value(particles))
-    };
+    let one =
+        |params: Vec<Point>, particles| Choice::new("light_tracing", &details, params, value(particles));
     Ok(match &spec.particles {
         None => vec![one(Vec::new(), None)],
         Some(sweep) => points("particles", sweep).map(|p| one(vec![p], Some(p.1 as u64))).collect(),
@@ -71,8 +70,7 @@ pub fn progressive(spec: &ProgressiveSpec) -> Chosen {
     for photons in points("photons", &spec.photons) {
         for radius in points("radius", &spec.radius) {
             for alpha in points("alpha", &spec.alpha) {
-                let gather =
-                    Gather::Shrinking { radius: radius.1, alpha: alpha.1, passes: spec.passes };
+                let gather = Gather::Shrinking { radius: radius.1, alpha: alpha.1, passes: spec.passes };
                 let map = map(photons, gather, spec.kernel, spec.direct, spec.directions);
                 let params = vec![photons, radius, alpha];
                 all.push(Choice::new("progressive", &details, params, Untermined::PhotonMap(map)));
@@ -82,7 +80,13 @@ pub fn progressive(spec: &ProgressiveSpec) -> Chosen {
     Ok(all)
 }
 
-fn map(photons: Point, gather: Gather, kernel: Kernel, direct: DirectLight, directions: Directions) -> PhotonMap {
+fn map(
+    photons: Point,
+    gather: Gather,
+    kernel: Kernel,
+    direct: DirectLight,
+    directions: Directions,
+) -> PhotonMap {
     let roulette = Roulette::unclamped(Rule::None); // until the file's rule is known
     PhotonMap { photons: photons.1 as u64, gather, kernel, direct, final_gather: 0, directions, roulette }
 }

@@ -121,7 +121,8 @@ fn kernel<'de, D: Deserializer<'de>>(d: D) -> Result<Kernel, D::Error> {
     if let Kernel::Cone { c } = kernel
         && !(c >= 1.0 && c.is_finite())
     {
-        let why = format!("{c} is out of range: a cone's c is finite and at least 1, or photons count below 0");
+        let why =
+            format!("{c} is out of range: a cone's c is finite and at least 1, or photons count below 0");
         return Err(serde::de::Error::custom(why));
     }
     Ok(kernel)
