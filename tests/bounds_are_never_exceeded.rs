@@ -49,7 +49,11 @@ fn largest(kind: &SceneKind, estimator: &Estimator) -> [Rgb; BINS + 1] {
     for path in 0..PATHS {
         let (mut tally, mut stream) = (Tally::default(), address.stream(path, 0));
         let start = scene.start((0, 0), &mut stream);
-        estimator.estimate(start.ray, &mut Ctx::new(&scene, stream, &mut tally, &start));
+        estimator.estimate(
+            &furnace::estimator::Pass::Nothing,
+            start.ray,
+            &mut Ctx::new(&scene, stream, &mut tally, &start),
+        );
         for (largest, value) in largest.iter_mut().zip(tally.bounces.into_iter().chain([tally.value])) {
             *largest = largest.max(value);
         }

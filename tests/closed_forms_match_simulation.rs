@@ -124,6 +124,7 @@ impl Toy {
             Estimator::Implicit(e) => (1, e.directions, false),
             Estimator::Explicit(e) => (1, e.directions, true),
             Estimator::Recursive(e) => (e.samples, e.directions, false),
+            Estimator::LightTracing(_) | Estimator::PhotonMap(_) => unreachable!("no path from the eye"),
         };
         let (roulette, uniform) = (*estimator.roulette(), directions == Directions::Uniform);
         let (bounces, rays, rng) = ([Rgb::ZERO; BINS], 0, 1);

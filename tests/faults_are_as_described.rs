@@ -63,7 +63,8 @@ fn tally(scene: &Scene, estimator: &impl Estimate, realization: u64) -> Vec<u64>
     let mut tally = Tally::default();
     let mut stream = Address::of(&["faults"]).stream(realization, 3);
     let start = scene.start((1, 1), &mut stream);
-    estimator.estimate(start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
+    let pass = estimator.begin(realization, &mut Ctx::shared(scene, stream.clone(), &mut Tally::default()));
+    estimator.estimate(&pass, start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
     let values = tally.bounces.iter().chain([&tally.value]).flat_map(|v| v.to_array().map(f64::to_bits));
     values.chain([tally.rays, tally.non_finite, tally.negative]).collect()
 }

@@ -80,7 +80,7 @@ fn has_no_variance(faulty: &Faulty) -> bool {
     let uniform = match faulty.estimator {
         Estimator::Implicit(e) => e.directions == Directions::Uniform,
         Estimator::Explicit(e) => e.directions == Directions::Uniform,
-        Estimator::Recursive(_) => false,
+        Estimator::Recursive(_) | Estimator::LightTracing(_) | Estimator::PhotonMap(_) => false,
     };
     let constant = matches!(faulty.estimator.roulette().rule, Rule::Constant { .. });
     faulty.fault.name == "directions_without_cosine" && !(uniform && constant)

@@ -41,7 +41,11 @@ fn each_sample(scene: &SceneKind, estimator: &Estimator, check: impl Fn(&Tally))
         let mut tally = Tally::default();
         let mut stream = Address::of(&["furnace_is_exact_per_bounce"]).stream(realization, 0);
         let start = scene.start((0, 0), &mut stream);
-        estimator.estimate(start.ray, &mut Ctx::new(&scene, stream, &mut tally, &start));
+        estimator.estimate(
+            &furnace::estimator::Pass::Nothing,
+            start.ray,
+            &mut Ctx::new(&scene, stream, &mut tally, &start),
+        );
         assert_eq!((tally.non_finite, tally.negative, tally.runaway), (0, 0, 0));
         check(&tally);
     }

@@ -94,7 +94,8 @@ fn direct(scene: &Scene, how: LightSampling, name: &str) -> (Rgb, Rgb) {
     let plate = scene.intersect(&Ray { o: origin * 0.05, d: direction, from: NOWHERE }, 0.0).unwrap();
     let mut tally = Tally::default();
     let stream = Address::of(&["lights", name, &format!("{how:?}")]).stream(0, 0);
-    let start = Start { ray: Ray { o: origin, d: direction, from: NOWHERE }, response: 1.0, time: 0.0 };
+    let start =
+        Start { ray: Ray { o: origin, d: direction, from: NOWHERE }, response: 1.0, time: 0.0, pixel: 0 };
     let mut cx = Ctx::new(scene, stream, &mut tally, &start);
     let (mut sum, mut squares) = (Rgb::ZERO, Rgb::ZERO);
     for _ in 0..SAMPLES {
@@ -280,7 +281,7 @@ fn one_point_light_has_no_variance() {
         let plate = scene.intersect(&ray, 0.0).unwrap();
         let mut tally = Tally::default();
         let stream = Address::of(&["lights", "point"]).stream(0, 0);
-        let start = Start { ray, response: 1.0, time: 0.0 };
+        let start = Start { ray, response: 1.0, time: 0.0, pixel: 0 };
         let mut cx = Ctx::new(&scene, stream, &mut tally, &start);
         for how in WAYS.into_iter().chain([UNIFORM]).cycle().take(300) {
             let direct = cx.direct(&plate, how);

@@ -217,7 +217,7 @@ fn a_path_happens_at_one_moment() {
     let value = |scene: &Scene, i: u64| {
         let mut stream = address.stream(i, 0);
         let (mut tally, start) = (Tally::default(), scene.start((0, 0), &mut stream));
-        estimator.estimate(start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
+        estimator.estimate(&(), start.ray, &mut Ctx::new(scene, stream, &mut tally, &start));
         tally.value.x
     };
     let (mut lit, mut sum, n) = (0u32, 0.0, 1u64 << 16);

@@ -94,9 +94,13 @@ fn the_renderer_obeys() {
 struct Late(Implicit);
 
 impl Estimate for Late {
-    fn estimate(&self, ray: furnace::scene::Ray, cx: &mut furnace::estimator::Ctx<'_>) {
+    type Pass = ();
+
+    fn begin(&self, _: u64, _: &mut furnace::estimator::Ctx<'_>) {}
+
+    fn estimate(&self, (): &(), ray: furnace::scene::Ray, cx: &mut furnace::estimator::Ctx<'_>) {
         let roulette = Roulette { from: self.0.roulette.from + 1, ..self.0.roulette };
-        Implicit { roulette, ..self.0 }.estimate(ray, cx);
+        Implicit { roulette, ..self.0 }.estimate(&(), ray, cx);
     }
 
     fn property(&self) -> Property {

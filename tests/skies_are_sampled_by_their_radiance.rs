@@ -168,7 +168,7 @@ fn first_hit(scene: &Scene) -> (Ray, Hit<'_>) {
 /// Irradiance of the plate, sampled and by chance; the plate reflects it divided by π.
 fn assert_irradiance(name: &str, scene: &Scene, exact: f64) {
     let (ray, x) = first_hit(scene);
-    let start = Start { ray, response: 1.0, time: 0.0 };
+    let start = Start { ray, response: 1.0, time: 0.0, pixel: 0 };
     let hold = |what: &str, (mean, error): (Rgb, Rgb)| {
         let (mean, width) = (mean * PI, SIGMAS * error * PI + 1e-12 * L);
         assert!((width / L).max_element() < 0.15 * exact, "{name} {what}: {width} is too wide");
@@ -206,7 +206,7 @@ fn plates_in_the_open_have_the_irradiance_of_integrals() {
         assert_irradiance("wall", &plate(across, cosine(1.0, up), &[]), 2.0 / 3.0);
         let below = plate(-up, cosine(2.0, up), &[]);
         let (ray, x) = first_hit(&below);
-        let (mut tally, start) = (Tally::default(), Start { ray, response: 1.0, time: 0.0 });
+        let (mut tally, start) = (Tally::default(), Start { ray, response: 1.0, time: 0.0, pixel: 0 });
         let stream = Address::of(&["skies", "below"]).stream(0, 0);
         let mut cx = Ctx::new(&below, stream, &mut tally, &start);
         assert!((0..1000).all(|_| cx.direct(&x, LightSampling::AREA).is_none()), "the sky is above");

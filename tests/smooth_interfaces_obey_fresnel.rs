@@ -335,9 +335,9 @@ fn a_glass_ball_under_a_uniform_sky_is_not_seen() {
         let aim = center + 0.99 * radius * direction();
         let ray = Ray { o, d: (aim - o).normalize(), from: NOWHERE };
         let mut tally = Tally::default();
-        let start = furnace::scene::Start { ray, response: 1.0, time: 0.0 };
+        let start = furnace::scene::Start { ray, response: 1.0, time: 0.0, pixel: 0 };
         let stream = Address::of(&["smooth_interfaces_obey_fresnel", "paths"]).stream(i, 0);
-        estimator.estimate(ray, &mut Ctx::new(&scene, stream, &mut tally, &start));
+        estimator.estimate(&(), ray, &mut Ctx::new(&scene, stream, &mut tally, &start));
         assert!((tally.value / expected - 1.0).abs().max_element() < 1e-12, "{}", tally.value);
         assert!(tally.rays >= 2);
     }

@@ -76,7 +76,7 @@ fn weights_sum_to_one_along_sampled_directions() {
     let scene = open_air();
     let ray = Ray { o: at(0.1, 2.0, 0.2), d: -DVec3::Y, from: NOWHERE };
     let x = scene.intersect(&ray, 0.0).unwrap();
-    let start = Start { ray, response: 1.0, time: 0.0 };
+    let start = Start { ray, response: 1.0, time: 0.0, pixel: 0 };
     for (points, pick) in [Points::Area, Points::SolidAngle]
         .into_iter()
         .flat_map(|points| [Pick::Power, Pick::Uniform].map(|pick| (points, pick)))
@@ -253,11 +253,15 @@ fn through_mirrors_and_glass_whatever_the_clamp() {
 fn each_sample(scene: &Scene, estimator: &Estimator, check: impl Fn(&Tally)) {
     let Sensor::Probe { origin, direction } = scene.sensor else { unreachable!() };
     let ray = Ray { o: origin, d: direction, from: NOWHERE };
-    let start = Start { ray, response: 1.0, time: 0.0 };
+    let start = Start { ray, response: 1.0, time: 0.0, pixel: 0 };
     for i in 0..1000 {
         let mut tally = Tally::default();
         let stream = Address::of(&["techniques_agree", "each"]).stream(i, 0);
-        estimator.estimate(ray, &mut Ctx::new(scene, stream, &mut tally, &start));
+        estimator.estimate(
+            &furnace::estimator::Pass::Nothing,
+            ray,
+            &mut Ctx::new(scene, stream, &mut tally, &start),
+        );
         check(&tally);
     }
 }

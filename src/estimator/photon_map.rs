@@ -115,7 +115,7 @@ impl PhotonMap {
         for (t, photon) in near.photons() {
             let scattered = bounce + photon.bounce() + 1;
             if wanted(photon) && photon.lies_on(x) && self.roulette.reaches(scattered) {
-                let f = x.material.bsdf.f(x.frame.n, x.wo, photon.wi());
+                let f = x.material.bsdf.f(x.frame.n, x.wo, photon.wi(x));
                 bins[(scattered as usize).min(BINS - 1)] += f * photon.power() * self.kernel.weight(t);
             }
         }

@@ -43,10 +43,14 @@ impl Photon {
         self.power.as_dvec3()
     }
 
-    /// Unit direction that it came from.
+    /// Unit direction that it came from, turned with the normal from where it landed to `x`. Density estimation takes the
+    /// surface for flat: on a curved one a photon that came in low would else come from below the horizon of `x`, and
+    /// count for nothing.
     #[inline]
-    pub fn wi(&self) -> DVec3 {
-        self.wi.as_dvec3()
+    pub fn wi(&self, x: &Hit<'_>) -> DVec3 {
+        let (wi, from, to) = (self.wi.as_dvec3(), self.normal.as_dvec3(), x.frame.n);
+        let both = from + to;
+        wi - both * (both.dot(wi) / (1.0 + from.dot(to))) + to * (2.0 * from.dot(wi))
     }
 
     /// How often it was scattered before it landed.

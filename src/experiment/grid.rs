@@ -2,8 +2,8 @@
 
 use super::choices::{self, Choice};
 use super::error::Error;
-use super::making;
-use super::plan::CellPlan;
+use super::plan::{CellPlan, LeftOut};
+use super::reach;
 use super::spec::{Grid, Spec, Streams};
 use crate::estimator::{Estimator, Roulette, Rule};
 use crate::faults::Fault;
@@ -24,29 +24,36 @@ struct Written<T> {
 
 type Axis<S> = Spanned<Vec<Spanned<super::input::Named<S>>>>;
 
-/// All cells of the file, without their samples, and the names of its swept parameters.
-pub fn resolve(spec: &Spec, file: &Path, source: &str) -> Result<(Vec<CellPlan>, Vec<String>), Error> {
+/// What a file asks for.
+#[derive(Default)]
+pub struct Resolved {
+    /// All cells, without their samples.
+    pub cells: Vec<CellPlan>,
+    /// Cells that cannot be run, and why.
+    pub left_out: Vec<LeftOut>,
+    /// Names of the swept parameters.
+    pub swept: Vec<String>,
+}
+
+/// All that the file asks for.
+pub fn resolve(spec: &Spec, file: &Path, source: &str) -> Result<Resolved, Error> {
     let at = |span: Range<usize>, message: String| Error::at(file, source, span, message);
-    let mut cells = Vec::new();
-    let mut swept = Vec::new();
+    let mut resolved = Resolved::default();
     for grid in &spec.grid.0 {
-        grid_cells(spec, grid, &at, &mut cells, &mut swept)?;
+        grid_cells(spec, grid, &at, &mut resolved)?;
     }
-    if cells.is_empty() {
-        return Err(Error::Refused(format!(
-            "{}: an empty list of grids leaves nothing to run",
-            file.display()
-        )));
+    if resolved.cells.is_empty() {
+        let why = resolved.left_out.first().map_or("an empty list of grids", |out| out.why.as_str());
+        return Err(Error::Refused(format!("{}: {why} leaves nothing to run", file.display())));
     }
-    Ok((cells, swept))
+    Ok(resolved)
 }
 
 fn grid_cells(
     spec: &Spec,
     grid: &Grid,
     at: &dyn Fn(Range<usize>, String) -> Error,
-    cells: &mut Vec<CellPlan>,
-    swept: &mut Vec<String>,
+    resolved: &mut Resolved,
 ) -> Result<(), Error> {
     let scenes = axis(&grid.scene, "scenes", at, choices::scenes)?;
     let estimators = axis(&grid.estimator, "estimators", at, |s| choices::estimators(s, spec.faults))?;
@@ -63,11 +70,11 @@ fn grid_cells(
                     .into_iter()
                     .flatten();
                 for &(name, _, is_swept) in params.clone() {
-                    if is_swept && !swept.iter().any(|s| s == name) {
-                        swept.push(name.to_owned());
+                    if is_swept && !resolved.swept.iter().any(|s| s == name) {
+                        resolved.swept.push(name.to_owned());
                     }
                 }
-                cells.push(CellPlan {
+                let cell = CellPlan {
                     scene: scene.choice.value.clone(),
                     scene_label: scene.choice.label.clone(),
                     estimator: whole,
@@ -80,12 +87,16 @@ fn grid_cells(
                     runs: 1,
                     pixels: pixels(&built),
                     rays: rays(&scene.choice.value, &built, &whole),
-                    finds_all: making::finds_all(&whole, &built),
+                    finds_all: reach::finds_all(&whole, &built),
                     address: address(spec, &scene.choice.value, &whole, fault),
                     paired: spec.streams == Streams::Paired,
                     streams: Vec::new(),
                     may_stop: false,
-                });
+                };
+                match reach::out_of(&cell, &built) {
+                    Some(why) => resolved.left_out.push(LeftOut { cell, why }),
+                    None => resolved.cells.push(cell),
+                }
             }
         }
     }
@@ -121,6 +132,9 @@ pub(super) fn lit(estimator: &Estimator, scene: &Scene) -> Result<(), String> {
                  or use `implicit`"
                 .to_owned())
         }
+        Estimator::PhotonMap(_) if scene.surfaces().iter().all(|s| s.material.bsdf.is_dirac()) => Err("photons lie on \
+             matte or glossy surfaces, and this scene has none; use a path tracer"
+            .to_owned()),
         _ => Ok(()),
     }
 }

@@ -6,10 +6,10 @@ use super::cell::{self, Block};
 use super::error::Error;
 use super::grid;
 use super::pixels::Pixels;
+use super::reach;
 use super::run::{WAVE_PATHS, block_of};
 use crate::estimator::{Estimate, Estimator, Property};
 use crate::sampling::Address;
-use crate::scene::Scene;
 use crate::scene::library::SceneKind;
 use crate::truth::Own;
 use crate::truth::own::Provenance;
@@ -42,31 +42,6 @@ pub enum Ended {
     Stopped,
 }
 
-/// Whether no light is out of an estimator's reach: points are found by sampling them only, and not behind mirrors or
-/// glass.
-pub fn finds_all(estimator: &Estimator, scene: &Scene) -> bool {
-    let smooth = || scene.surfaces().iter().any(|s| s.material.bsdf.is_dirac());
-    scene.points().next().is_none()
-        || match estimator {
-            Estimator::PhotonMap(_) => true,
-            // particles reach all that the eye sees without a mirror or glass
-            Estimator::LightTracing(_) => !sees_smooth(scene),
-            _ => estimator.samples_lights() && !smooth(),
-        }
-}
-
-/// Whether one of many rays from the sensor meets a mirror or glass first.
-fn sees_smooth(scene: &Scene) -> bool {
-    let (width, height) = scene.sensor.resolution();
-    let rays = 4096 / (width * height).min(4096) + 1;
-    let address = Address::of(&["what the sensor sees"]);
-    let meets = |ray: u32, x: u32, y: u32| {
-        let start = scene.start((x, y), &mut address.stream(u64::from(ray), u64::from(y * width + x)));
-        scene.intersect(&start.ray, start.time).is_some_and(|x| x.material.bsdf.is_dirac())
-    };
-    (0..height).any(|y| (0..width).any(|x| (0..rays).any(|ray| meets(ray, x, y))))
-}
-
 /// A reference without samples.
 pub fn begin(scene: &SceneKind, estimator: &Estimator, seed: u64) -> Result<Own, Error> {
     let built = scene.build();
@@ -75,9 +50,10 @@ pub fn begin(scene: &SceneKind, estimator: &Estimator, seed: u64) -> Result<Own,
         return Err(Error::Refused(format!("an image of {width} x {height} pixels; references are square")));
     }
     if estimator.property() != Property::Unbiased {
-        return Err(Error::Refused("a clamped estimator is biased and makes no reference".to_owned()));
+        let why = "a reference is made by an unbiased estimator: without a clamp, and not by photon density";
+        return Err(Error::Refused(why.to_owned()));
     }
-    if !finds_all(estimator, &built) {
+    if !reach::finds_all(estimator, &built) {
         let why = "this estimator misses light from the scene's points, so it makes no reference";
         return Err(Error::Refused(why.to_owned()));
     }

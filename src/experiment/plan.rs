@@ -80,12 +80,23 @@ pub struct Plan {
     pub spec: Spec,
     /// All cells.
     pub cells: Vec<CellPlan>,
+    /// Cells that were asked for and are not run.
+    pub left_out: Vec<LeftOut>,
     /// Names of the swept parameters.
     pub swept: Vec<String>,
     /// Stored images that the file names.
     pub references: Vec<NamedReference>,
     /// How many questions each claim asks at most in the whole experiment, if only one of its cells is run.
     pub(super) whole: Option<Vec<usize>>,
+}
+
+/// A cell that cannot be run.
+#[derive(Clone, Debug)]
+pub struct LeftOut {
+    /// What it would be.
+    pub cell: CellPlan,
+    /// Why not.
+    pub why: String,
 }
 
 /// What the command line changes.
@@ -114,7 +125,7 @@ pub const RAYS_PER_SECOND: f64 = 1e7;
 /// The cells of an experiment file, whose text is `source`, without their samples: all that can be said of it before
 /// its references are made.
 pub fn cells(file: &Path, source: &str) -> Result<Vec<CellPlan>, Error> {
-    Ok(grid::resolve(&spec::parse(file, source)?, file, source)?.0)
+    Ok(grid::resolve(&spec::parse(file, source)?, file, source)?.cells)
 }
 
 impl Plan {
@@ -122,9 +133,9 @@ impl Plan {
     pub fn new(name: &str, file: &Path, source: &str, overrides: &Overrides) -> Result<Self, Error> {
         let mut spec = spec::parse(file, source)?;
         spec.seed = overrides.seed.unwrap_or(spec.seed);
-        let (cells, swept) = grid::resolve(&spec, file, source)?;
+        let grid::Resolved { cells, left_out, swept } = grid::resolve(&spec, file, source)?;
         let references = references::load(&spec, &cells, file, source)?;
-        let mut plan = Plan { name: name.to_owned(), spec, cells, swept, references, whole: None };
+        let mut plan = Plan { name: name.to_owned(), spec, cells, left_out, swept, references, whole: None };
         plan.distinct()?;
         plan.about_something()?;
         if let Some(text) = &overrides.filter {

@@ -249,8 +249,11 @@ impl Subject<'_> {
         row.against(&Value::exact(expected, Source::ClosedForm), Some(expected));
         let n = self.cell.cost.n as f64;
         let fourth = central(4);
-        let error =
-            fourth.value().map(|mu4| ((mu4 - expected * expected * (n - 3.0) / (n - 1.0)) / n).sqrt());
+        let known = |mu4: f64| ((mu4 - expected * expected * (n - 3.0) / (n - 1.0)) / n).sqrt();
+        // where theory does not know the fourth moment, samples may, unless their tail is heavy
+        let is_light = fourth == Known::Unknown && self.cell.tails[channel].guard().0 == Light::Green;
+        let of_sample = || self.cell.total[channel].variance_std_error().filter(|_| is_light);
+        let error = fourth.value().map(known).or_else(of_sample);
         row.std_error = error;
         if fourth == Known::Infinite {
             row.note = "infinite fourth moment: the variance has no interval, not judged".to_owned();

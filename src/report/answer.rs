@@ -34,8 +34,18 @@ pub fn sentences(lookup: &Lookup<'_>) -> Vec<String> {
     sentences.extend(families.iter().flat_map(|family| compare::missed(lookup, family)));
     sentences.extend(truths(lookup));
     sentences.extend(mistakes::sentences(lookup));
+    sentences.extend(left_out(lookup));
     sentences.extend(claims(lookup));
     sentences
+}
+
+/// Cells that were asked for and not run.
+fn left_out(lookup: &Lookup<'_>) -> impl Iterator<Item = String> {
+    lookup
+        .plan
+        .left_out
+        .iter()
+        .map(|out| format!("Left out is {}: {}.", lookup.plan.label(&out.cell), out.why))
 }
 
 /// Finished cells without a known mistake, grouped by what `alike` says.

@@ -1,19 +1,24 @@
 //! What theory says of one estimator in one scene: mean, central moments and cost, per channel and per bounce.
 
+mod photons;
+
 use super::Known;
 use super::enclosure::{Counted, Enclosure, Wall, average};
 use super::gallery::{self, Series, Tail};
 use super::moments::Central;
 use super::walk::Walk;
-use crate::estimator::{Estimate, Estimator, Property, Rule, Technique};
+use crate::estimator::{Estimator, Rule, Technique};
 use crate::scene::library::{Patch, SceneKind, Setting, View};
 use crate::scene::{Points, Rgb, Sensor};
+use photons::Density;
 use std::f64::consts::PI;
 
 /// Closed forms for one estimator in one scene, per channel and per bounce.
 pub struct ClosedForm {
     theory: Theory,
     estimator: Estimator,
+    /// What is known of it as a photon map.
+    density: Option<Density>,
 }
 
 /// Where light goes.
@@ -44,6 +49,7 @@ impl ClosedForm {
     /// The closed forms of `estimator` in `scene`, or `None` where the scene has none.
     pub fn of(scene: &SceneKind, estimator: &Estimator) -> Option<Self> {
         let whole = |albedo, emission| [Patch { fraction: 1.0, albedo, emission }];
+        let is_map = matches!(estimator, Estimator::PhotonMap(_));
         let theory = match scene {
             SceneKind::Furnace { albedo, emission, view } => {
                 among(Enclosure::sphere(&whole(*albedo, *emission)), 0, *view, Tail::None)
@@ -63,7 +69,8 @@ impl ClosedForm {
             SceneKind::Exhibit { name, parameter, setting } => match &gallery::find(name)?.theory {
                 gallery::Theory::Series { mean, missed, variance } => Theory::Series {
                     series: mean(*parameter),
-                    missed: missed(*parameter, estimator),
+                    // photons land wherever light does
+                    missed: if is_map { None } else { missed(*parameter, estimator) },
                     variance: estimator.is_path_tracer().then(|| variance(*parameter, estimator)).flatten(),
                     steady: steady(setting, estimator),
                 },
@@ -77,7 +84,7 @@ impl ClosedForm {
             | SceneKind::Lecture(_)
             | SceneKind::Custom { .. } => return None,
         };
-        Some(ClosedForm { theory, estimator: *estimator })
+        Some(ClosedForm { theory, estimator: *estimator, density: Density::of(scene, estimator) })
     }
 
     /// The right value, whatever the estimator makes of it.
@@ -94,7 +101,7 @@ impl ClosedForm {
 
     /// The mean of this estimator: the right value less what it never finds and what a clamp leaves out.
     pub fn expected(&self, channel: usize, counted: Counted) -> f64 {
-        let Property::Clamped { bounces } = self.estimator.property() else {
+        let Some(bounces) = self.estimator.roulette().clamp else {
             return self.found(channel, counted);
         };
         let left_out = match counted {
@@ -107,8 +114,19 @@ impl ClosedForm {
     }
 
     /// The mean of a density estimate, which blurs what it sees: known where blurring changes nothing.
-    pub fn blurred(&self, _channel: usize, _counted: Counted) -> Option<f64> {
-        None
+    pub fn blurred(&self, channel: usize, counted: Counted) -> Option<f64> {
+        let density = self.density.as_ref()?;
+        let factor = density.factor()?;
+        let exact = (0..if density.samples_direct() { 2 } else { 1 }).map(Counted::Only);
+        let of_photons = |counted| factor * self.expected(channel, counted);
+        Some(match counted {
+            _ if exact.clone().any(|k| k == counted) => self.expected(channel, counted),
+            Counted::All | Counted::From(0) => {
+                let apart: f64 = exact.map(|k| (1.0 - factor) * self.expected(channel, k)).sum();
+                of_photons(Counted::All) + apart
+            }
+            Counted::Only(_) | Counted::From(_) => of_photons(counted),
+        })
     }
 
     /// The right value less what this estimator has no way to find.
@@ -122,6 +140,9 @@ impl ClosedForm {
 
     /// The central moment of the given order (2, 3 or 4) of one sample.
     pub fn central(&self, channel: usize, counted: Counted, order: usize) -> Known {
+        if let Some(density) = &self.density {
+            return if order == 2 { density.variance(channel, counted) } else { Known::Unknown };
+        }
         if let Theory::Series { variance, steady, .. } = &self.theory {
             let mean = self.expected(channel, counted);
             return match variance {
@@ -167,6 +188,9 @@ impl ClosedForm {
 
     /// Expected rays a realization, where known and finite.
     pub fn rays(&self) -> Option<f64> {
+        if let Some(density) = &self.density {
+            return density.rays();
+        }
         let Theory::Enclosure { enclosure, seen, .. } = &self.theory else { return None };
         let rays = average(seen, &Walk::new(enclosure, &self.estimator)?.rays()?);
         rays.is_finite().then_some(rays)

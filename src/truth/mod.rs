@@ -4,6 +4,7 @@
 pub mod bound;
 pub mod choice;
 mod closed_form;
+pub mod density;
 pub mod deterministic;
 pub mod direct;
 pub mod enclosure;

@@ -57,7 +57,7 @@ pub enum Command {
 pub struct Render {
     /// A scene with a camera: its name, such as cornell_box or smallpt, or FILE.toml:NAME
     pub scene: String,
-    /// implicit or explicit
+    /// explicit, implicit, light_tracing or photon_map
     #[arg(long, default_value = "explicit")]
     pub estimator: String,
     /// Samples a pixel
@@ -82,7 +82,7 @@ pub struct Reference {
     #[arg(long, value_name = "N", default_value_t = 1_000_000_000_000,
         value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000_000))]
     pub max_samples: u64,
-    /// implicit or explicit; the reference will not judge estimators of the same kind
+    /// explicit, implicit or light_tracing; the reference will not judge estimators of the same kind
     #[arg(long, default_value = "explicit")]
     pub estimator: String,
     /// Pixels along each edge, if the scene has a camera

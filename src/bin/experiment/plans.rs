@@ -26,6 +26,9 @@ pub fn plans(names: &[String], margin: Option<f64>, options: &Options) -> Result
                 needed(&plan, cell, i, margin, stored.as_ref())
             );
         }
+        for out in &plan.left_out {
+            println!("{:<64} left out: {}", plan.label(&out.cell), out.why);
+        }
         println!("{}", cost(&plan));
     }
     Ok(HELD)

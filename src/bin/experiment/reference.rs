@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 /// Makes a reference of `args.scene`, or goes on with the one that is there.
 pub fn reference(args: &Reference, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
     let scene = subject::scene(&args.scene, args.resolution, options)?;
-    let estimator = subject::estimator(&args.estimator)?;
+    let estimator = subject::estimator(&args.estimator, scene.build().sensor.resolution())?;
     let label = args.scene.rsplit_once(".toml:").map_or(args.scene.as_str(), |(_, label)| label);
     let by_default = || files::root().join("references/own").join(plots::file_name(&[label]) + ".exr");
     let path: PathBuf = args.output.clone().unwrap_or_else(by_default);

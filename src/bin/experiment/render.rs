@@ -13,8 +13,8 @@ use std::sync::atomic::AtomicBool;
 pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
     subject::must_be_exr(&args.output)?;
     let scene = subject::scene(&args.scene, args.resolution, options)?;
-    let estimator = subject::estimator(&args.estimator)?;
     let (width, height) = scene.build().sensor.resolution();
+    let estimator = subject::estimator(&args.estimator, (width, height))?;
     if width * height == 1 {
         return Err(Error::Refused(format!("{} has no camera, so there is no image to render", args.scene)));
     }

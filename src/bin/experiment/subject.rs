@@ -2,7 +2,10 @@
 
 use crate::args::Options;
 use crate::files::Source;
-use furnace::estimator::{Estimator, Explicit, Implicit, Roulette, Rule, Technique};
+use furnace::estimator::{
+    DirectLight, Estimator, Explicit, Gather, Implicit, Kernel, Last, LightTracing, PhotonMap, Roulette,
+    Rule, Technique,
+};
 use furnace::experiment::spec::{
     CausticSpec, DofSpec, FurnaceSpec, ImageSpec, MotionSpec, SceneSpec, SphereSpec, WideImageSpec,
 };
@@ -129,8 +132,8 @@ fn usual(spec: &SceneSpec) -> Result<SceneKind, Error> {
     Ok(choices.swap_remove(0).value)
 }
 
-/// An unbiased estimator with parameters that do well in most scenes.
-pub fn estimator(name: &str) -> Result<Estimator, Error> {
+/// An estimator with parameters that do well in most scenes, for a sensor of this resolution.
+pub fn estimator(name: &str, resolution: (u32, u32)) -> Result<Estimator, Error> {
     let roulette = Roulette { rule: Rule::Throughput { floor: 0.05 }, from: 5, clamp: None };
     let (lights, directions) = (LightSampling::AREA, Directions::Cosine);
     match name {
@@ -138,7 +141,23 @@ pub fn estimator(name: &str) -> Result<Estimator, Error> {
             Ok(Estimator::Explicit(Explicit { technique: Technique::Light, lights, directions, roulette }))
         }
         "implicit" => Ok(Estimator::Implicit(Implicit { directions, roulette })),
-        other => Err(Error::Refused(format!("no estimator `{other}`; there are explicit, implicit"))),
+        "light_tracing" => {
+            let (width, height) = resolution;
+            let particles = u64::from(width) * u64::from(height);
+            Ok(Estimator::LightTracing(LightTracing { particles, directions, roulette }))
+        }
+        "photon_map" => Ok(Estimator::PhotonMap(PhotonMap {
+            photons: 200_000,
+            gather: Gather::Nearest { k: 100, last: Last::LeftOut },
+            kernel: Kernel::Box,
+            direct: DirectLight::Photons,
+            final_gather: 0,
+            directions,
+            roulette: Roulette { from: 0, ..roulette },
+        })),
+        other => Err(Error::Refused(format!(
+            "no estimator `{other}`; there are explicit, implicit, light_tracing, photon_map"
+        ))),
     }
 }
 
