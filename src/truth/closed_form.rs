@@ -81,6 +81,7 @@ impl ClosedForm {
             SceneKind::CornellBox { .. }
             | SceneKind::CornellEmpty { .. }
             | SceneKind::CornellFlush { .. }
+            | SceneKind::Lecture(_)
             | SceneKind::Custom { .. } => return None,
         };
         Some(ClosedForm { theory, estimator: *estimator, density: Density::of(scene, estimator) })
