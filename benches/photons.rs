@@ -53,11 +53,7 @@ fn photons(c: &mut Criterion) {
     let mut group = c.benchmark_group("gathers");
     group.sample_size(10);
     let nearest = |k| Gather::Nearest { k, last: Last::LeftOut };
-    let ways = [
-        ("k=50", nearest(50)),
-        ("k=500", nearest(500)),
-        ("r=0.02", Gather::Within { radius: 0.02 }),
-    ];
+    let ways = [("k=50", nearest(50)), ("k=500", nearest(500)), ("r=0.02", Gather::Within { radius: 0.02 })];
     for (name, gather) in ways {
         let map = map(gather);
         let mut tally = Tally::default();

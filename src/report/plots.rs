@@ -121,6 +121,9 @@ fn draw(
         panel.series.push(Series { label: label.clone(), colour: curve.colour, style, points: theory });
     }
     let points = curves::measured(lookup, curve, quantity, parameter);
+    if quantity == Quantity::Mse {
+        panel.marks.extend(curves::least(&points, curve, parameter));
+    }
     let style = Style::Markers(Marker::nth(i));
     panel.series.push(Series { label, colour: curve.colour, style, points });
     if parameter == "q" && quantity != Quantity::Cost {

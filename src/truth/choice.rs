@@ -136,13 +136,10 @@ impl Truth {
     /// estimator where the bounces are not known one by one, and for a consistent one whose bias has no closed form.
     pub fn expected(&self, channel: usize, counted: Counted) -> Option<Value> {
         self.origins.iter().find_map(|origin| match (origin, self.property) {
-            (Origin::ClosedForm(closed), Property::Consistent { .. }) => {
-                Some(Value::exact(closed.blurred(channel, counted)?, Source::ClosedForm))
+            (Origin::ClosedForm(closed), _) => {
+                Some(Value::exact(closed.mean(channel, counted)?, Source::ClosedForm))
             }
             (_, Property::Consistent { .. }) => None,
-            (Origin::ClosedForm(closed), _) => {
-                Some(Value::exact(closed.expected(channel, counted), Source::ClosedForm))
-            }
             (Origin::Deterministic(solution), Property::Clamped { bounces }) => {
                 solution.clamped(channel, counted, bounces)
             }

@@ -113,8 +113,16 @@ impl ClosedForm {
         self.found(channel, counted) - left_out
     }
 
-    /// The mean of a density estimate, which blurs what it sees: known where blurring changes nothing.
-    pub fn blurred(&self, channel: usize, counted: Counted) -> Option<f64> {
+    /// The mean of this estimator, also where it blurs what it sees; `None` where nobody knows by how much.
+    pub fn mean(&self, channel: usize, counted: Counted) -> Option<f64> {
+        match self.estimator {
+            Estimator::PhotonMap(_) => self.blurred(channel, counted),
+            _ => Some(self.expected(channel, counted)),
+        }
+    }
+
+    /// The mean of a density estimate: known where blurring changes nothing.
+    fn blurred(&self, channel: usize, counted: Counted) -> Option<f64> {
         let density = self.density.as_ref()?;
         let factor = density.factor()?;
         let exact = (0..if density.samples_direct() { 2 } else { 1 }).map(Counted::Only);

@@ -159,4 +159,6 @@ pub enum Quantity {
     Zeros,
     /// What the last bounce of a clamped walk adds, relative to the right total.
     Added,
+    /// Squared bias and variance of one realization together, relative to the squared truth.
+    Mse,
 }
