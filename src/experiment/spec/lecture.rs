@@ -28,7 +28,7 @@ pub struct WideImageSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CausticSpec {
-    /// Half the edge of the square that lights it [m].
+    /// Half the edge of the square that lights it, in metres.
     #[serde(deserialize_with = "input::half_edges")]
     pub light: Option<Sweep>,
     /// A point in its place.
@@ -42,7 +42,7 @@ pub struct CausticSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DofSpec {
-    /// Radius of the lens [m].
+    /// Radius of the lens, in metres.
     #[serde(deserialize_with = "input::apertures")]
     pub aperture: Option<Sweep>,
     /// Pixels along each edge of the image.
@@ -54,7 +54,7 @@ pub struct DofSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MotionSpec {
-    /// How far the board goes while the shutter is open [m].
+    /// How far the board goes while the shutter is open, in metres.
     #[serde(deserialize_with = "input::travels")]
     pub travel: Option<Sweep>,
     /// Pixels along each edge of the image.
