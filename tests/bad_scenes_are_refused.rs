@@ -147,7 +147,7 @@ fn impossible_sensors_are_refused() {
 #[test]
 fn a_scene_without_light_is_refused_for_explicit_only() {
     all_refused(
-        &[("emission = 0", "this scene has no light, and `explicit` samples lights; give a surface")],
+        &[("emission = 0", "this scene has no light, and this estimator starts from lights; give a surface")],
         |_| file(GOOD_SHAPE, "0", GOOD_SENSOR, "explicit"),
     );
     let (status, stderr) = run(place(&file(GOOD_SHAPE, "0", GOOD_SENSOR, "implicit")).path());

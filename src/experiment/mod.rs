@@ -6,6 +6,7 @@ pub mod cell;
 pub mod choices;
 pub mod error;
 mod grid;
+mod image;
 pub mod input;
 pub mod ledger;
 pub mod making;

@@ -72,7 +72,7 @@ pub struct Truth {
 }
 
 enum Origin {
-    ClosedForm(ClosedForm),
+    ClosedForm(Box<ClosedForm>),
     Deterministic(Deterministic),
     Stored(Arc<Reference>),
 }
@@ -88,7 +88,7 @@ impl Truth {
         let own = || stored.iter().find(|r| made_by(r).is_some_and(|k| k != kind(estimator))).cloned();
         let image = || given().or_else(embedded).or_else(own);
         let origins: Vec<Origin> = match ClosedForm::of(scene, estimator) {
-            Some(closed) => vec![Origin::ClosedForm(closed)],
+            Some(closed) => vec![Origin::ClosedForm(Box::new(closed))],
             None => {
                 let solution = Deterministic::of(scene).map(Origin::Deterministic);
                 solution.into_iter().chain(image().map(Origin::Stored)).collect()
@@ -109,7 +109,7 @@ impl Truth {
     /// Theory of the estimator's moments and cost, where there is one.
     pub fn theory(&self) -> Option<&ClosedForm> {
         self.origins.iter().find_map(|origin| match origin {
-            Origin::ClosedForm(closed) => Some(closed),
+            Origin::ClosedForm(closed) => Some(&**closed),
             _ => None,
         })
     }

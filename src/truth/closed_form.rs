@@ -149,7 +149,7 @@ impl ClosedForm {
     /// The central moment of the given order (2, 3 or 4) of one sample.
     pub fn central(&self, channel: usize, counted: Counted, order: usize) -> Known {
         if let Some(density) = &self.density {
-            return if order == 2 { density.variance(channel, counted) } else { Known::Unknown };
+            return density.central(channel, counted, order);
         }
         if let Theory::Series { variance, steady, .. } = &self.theory {
             let mean = self.expected(channel, counted);

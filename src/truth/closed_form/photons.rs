@@ -69,8 +69,14 @@ impl Density {
         }
     }
 
-    /// Variance of one map and gather, where light is counted that was scattered so often.
-    pub fn variance(&self, channel: usize, counted: Counted) -> Known {
+    /// Central moment of one map and gather, where light is counted that was scattered so often. The area that holds k
+    /// photons has the moments of 1 / area up to order k - 1 only.
+    pub fn central(&self, channel: usize, counted: Counted, order: usize) -> Known {
+        match self.map.gather {
+            Gather::Nearest { k, .. } if k as usize <= order => return Known::Infinite,
+            _ if order != 2 => return Known::Unknown,
+            _ => {}
+        }
         self.known_variance(channel, counted).map_or(Known::Unknown, |variance| match variance.is_finite() {
             true => Known::Value(variance),
             false => Known::Infinite,
