@@ -2,7 +2,7 @@
 
 mod photons;
 
-use super::Known;
+use super::{After, Known};
 use super::enclosure::{Counted, Enclosure, Wall, average};
 use super::gallery::{self, Series, Tail};
 use super::moments::Central;
@@ -112,20 +112,40 @@ impl ClosedForm {
         self.found(channel, counted) - left_out
     }
 
-    /// The mean of a density estimate, which blurs what it sees: known where blurring changes nothing.
+    /// The mean of a density estimate, which blurs what it sees: of all maps that make one picture.
     pub fn blurred(&self, channel: usize, counted: Counted) -> Option<f64> {
-        let density = self.density.as_ref()?;
-        let factor = density.factor()?;
-        let exact = (0..if density.samples_direct() { 2 } else { 1 }).map(Counted::Only);
-        let of_photons = |counted| factor * self.expected(channel, counted);
+        self.blurred_after(self.density.as_ref()?.passes(), channel, counted)
+    }
+
+    /// The same of the first `passes` maps.
+    fn blurred_after(&self, passes: u64, channel: usize, counted: Counted) -> Option<f64> {
+        let [direct, rest] = self.density.as_ref()?.factors(passes)?;
+        let of = |counted| self.expected(channel, counted);
+        let once = direct * of(Counted::Only(1));
         Some(match counted {
-            _ if exact.clone().any(|k| k == counted) => self.expected(channel, counted),
-            Counted::All | Counted::From(0) => {
-                let apart: f64 = exact.map(|k| (1.0 - factor) * self.expected(channel, k)).sum();
-                of_photons(Counted::All) + apart
-            }
-            Counted::Only(_) | Counted::From(_) => of_photons(counted),
+            _ if direct == 1.0 && rest == 1.0 => of(counted),
+            Counted::Only(0) => of(counted),
+            Counted::Only(1) => once,
+            Counted::All | Counted::From(0) => of(Counted::Only(0)) + once + rest * of(Counted::From(2)),
+            Counted::From(1) => once + rest * of(Counted::From(2)),
+            Counted::Only(_) | Counted::From(_) => rest * of(counted),
         })
+    }
+
+    /// What the mean of the first `n` realizations is like: of a picture whose passes differ, the first n of them.
+    pub fn after(&self, channel: usize, n: u64) -> After {
+        let expected = match &self.density {
+            None => Some(self.expected(channel, Counted::All)),
+            Some(_) => self.blurred_after(n, channel, Counted::All),
+        };
+        let variance = match &self.density {
+            Some(density) => density.variance_after(n, channel),
+            None => match self.central(channel, Counted::All, 2) {
+                Known::Value(variance) => Known::Value(variance / n as f64),
+                other => other,
+            },
+        };
+        After { bias: expected.map(|mean| mean - self.truth(channel, Counted::All)), variance }
     }
 
     /// The right value less what this estimator has no way to find.
