@@ -175,7 +175,8 @@ mod tests {
         assert!((variance.value + 0.8).abs() < 1e-9 && variance.std_error < 1e-9, "{variance:?}");
         // without noise the bias is a straight line, too; each run left out bends it
         assert_eq!(runs.exponent(Falling::Bias(1.0), &all), None, "of the other sign");
-        let flat: Vec<Vec<f64>> = means.iter().map(|_| MARKS.map(|n| 5.0 - 0.3 / n as f64).to_vec()).collect();
+        let flat: Vec<Vec<f64>> =
+            means.iter().map(|_| MARKS.map(|n| 5.0 - 0.3 / n as f64).to_vec()).collect();
         let flat = Runs { means: &flat, ..runs };
         for (falling, exponent) in [(Falling::Bias(-1.0), -1.0), (Falling::Mse, -2.0)] {
             let found = flat.exponent(falling, &[1.0, 0.5, 0.0]).unwrap();

@@ -1,10 +1,10 @@
 //! Which truth is used: the one place that knows their order.
 
-use super::{After, ClosedForm, Known};
 use super::deterministic::Deterministic;
 use super::enclosure::Counted;
 use super::own::kind;
 use super::reference::{Reference, Stored};
+use super::{After, ClosedForm, Known};
 use crate::estimator::{Estimate, Estimator, Property, Rates};
 use crate::scene::library::SceneKind;
 use std::fmt;

@@ -2,11 +2,11 @@
 
 mod photons;
 
-use super::{After, Known};
 use super::enclosure::{Counted, Enclosure, Wall, average};
 use super::gallery::{self, Series, Tail};
 use super::moments::Central;
 use super::walk::Walk;
+use super::{After, Known};
 use crate::estimator::{Estimator, Rule, Technique};
 use crate::scene::library::{Patch, SceneKind, Setting, View};
 use crate::scene::{Points, Rgb, Sensor};

@@ -4,10 +4,10 @@
 use crate::estimator::{DirectLight, Estimator, Gather, Kernel, Last, PhotonMap, Rule};
 use crate::scene::library::{Patch, SceneKind, View};
 use crate::scene::{Directions, Rgb, Shape};
+use crate::truth::density::Photons;
 use crate::truth::density::gradient::Nearest;
 use crate::truth::density::near_wall::NearWall;
 use crate::truth::density::nearest::Stored;
-use crate::truth::density::Photons;
 use crate::truth::gallery::point_near_wall;
 use crate::truth::{Counted, Known};
 use std::f64::consts::PI;
@@ -171,7 +171,8 @@ impl Density {
     /// Albedo in a channel and survival probability, where photons have a simple law.
     fn simple(&self, channel: usize) -> Option<(f64, f64)> {
         let (albedo, q) = (self.albedo()?[channel], self.q()?);
-        (self.map.final_gather == 0 && self.map.roulette.clamp.is_none() && albedo > 0.0).then_some((albedo, q))
+        (self.map.final_gather == 0 && self.map.roulette.clamp.is_none() && albedo > 0.0)
+            .then_some((albedo, q))
     }
 
     fn variance_within(&self, radius: f64, channel: usize, counted: Counted) -> Option<f64> {
@@ -197,7 +198,8 @@ impl Density {
     }
 
     fn variance_of_nearest(&self, channel: usize, counted: Counted) -> Option<f64> {
-        let (Gather::Nearest { k, last }, Light::OfWall(Some((_, le)))) = (self.map.gather, &self.light) else {
+        let (Gather::Nearest { k, last }, Light::OfWall(Some((_, le)))) = (self.map.gather, &self.light)
+        else {
             return None;
         };
         let Some(hits) = self.hits(counted) else { return Some(0.0) };
