@@ -271,7 +271,7 @@ claim = [{ rate = { alpha = 1e-3, margin = 0.5 } }]
 plot = [{ convergence = { scene = "furnace" } }]
 [grid]
 scene = ["furnace"]
-estimator = [{ progressive = { photons = 10, radius = 0.3, passes = 128 } }]
+estimator = [{ progressive = { photons = 100, radius = 0.5, passes = 128 } }]
 roulette = ["albedo"]
 "#;
 

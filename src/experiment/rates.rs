@@ -86,8 +86,22 @@ impl Decline {
         self.right
     }
 
+    /// Whether theory knows that there is no variance, and so no standard error of anything.
+    pub fn is_infinite(&self) -> bool {
+        self.theory.first().is_some_and(|after| after.variance == Known::Infinite)
+    }
+
+    /// What is not above this part of an error is rounding.
+    pub fn rounding(&self, kind: ErrorKind) -> f64 {
+        let relative = self.right.map_or(0.0, |right| 1e-12 * right.value.abs());
+        if kind == ErrorKind::Bias { relative } else { relative * relative }
+    }
+
     /// How one part of the error falls.
     pub fn fall(&self, kind: ErrorKind) -> Fall {
+        if self.theory.first().is_some_and(|after| after.variance == Known::Value(0.0)) {
+            return Fall::default(); // without noise nothing falls
+        }
         let all: Vec<f64> = self.marks.iter().map(|&n| if n >= FIRST { 1.0 } else { 0.0 }).collect();
         match kind {
             ErrorKind::Variance => Fall {
@@ -144,7 +158,8 @@ impl Decline {
     /// Whether theory has no bias at any number of samples.
     fn is_unbiased(&self) -> bool {
         let Some(right) = self.right else { return false };
-        self.theory.iter().all(|after| after.bias.is_some_and(|bias| bias.abs() <= 1e-12 * right.value.abs()))
+        let rounding = 1e-12 * right.value.abs();
+        self.theory.iter().all(|after| after.bias.is_some_and(|bias| bias.abs() <= rounding))
     }
 
     /// Why the truth is too inexact for what is left of the error.

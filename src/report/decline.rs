@@ -88,7 +88,8 @@ pub fn figure(lookup: &Lookup<'_>, cells: &[Option<Cell>], scene: &str, show: &[
     let (shared, names) = forest::names(lookup, &shown);
     let label = |(name, decline): (&String, &Decline)| {
         let slopes: Vec<String> = show.iter().map(|&kind| slope(&decline.fall(kind))).collect();
-        format!("{name}: {}", slopes.join(" / "))
+        let infinite = if decline.is_infinite() { " (infinite variance)" } else { "" };
+        format!("{name}: {}{infinite}", slopes.join(" / "))
     };
     let labels: Vec<String> = names.iter().zip(&declines).map(label).collect();
     let panels = show.iter().map(|&kind| panel(&declines, &labels, kind)).collect();
@@ -96,7 +97,7 @@ pub fn figure(lookup: &Lookup<'_>, cells: &[Option<Cell>], scene: &str, show: &[
     let subject = [vec![scene.to_owned()], shared].concat().join(", ");
     let name = file_name(&[&subject, "convergence"]);
     let figure = Figure {
-        title: format!("{subject}: {} over samples (legend: fitted exponents, red)", words.join(" / ")),
+        title: format!("{subject}, red: fitted exponents of {}", words.join(" / ")),
         alt: format!("{} over the number of samples of a run; dashed: theory.", words.join(", ")),
         panels,
         columns: show.len().min(3),
@@ -133,22 +134,22 @@ fn panel(declines: &[Decline], labels: &[String], kind: ErrorKind) -> Panel {
     for (i, (decline, label)) in declines.iter().zip(labels).enumerate() {
         let (colour, label) = (Colour::nth(i), label.clone());
         let theory = decline.marks.iter().zip(&decline.theory);
-        // next to nothing is rounding, and would stretch the axis
-        let known =
-            theory.filter_map(|(&n, after)| Some((n, of_theory(after)?))).filter(|point| point.1 > 1e-12);
+        let known = theory.filter_map(|(&n, after)| Some((n, of_theory(after)?)));
+        let known = known.filter(|point| point.1 > decline.rounding(kind));
         let points: Vec<Point> = known.map(|(n, y)| Point::new(n as f64, y)).collect();
         if !points.is_empty() {
             series.push(Series { label: label.clone(), colour, style: Style::Dashed, points });
         }
         let point = |error: &Error| {
             let Estimate { value, std_error } = of_error(error)?;
-            let reach = Z_BAR * std_error;
-            let resolved = kind != ErrorKind::Bias || value > reach;
-            (resolved && value > 0.0)
-                .then(|| Point::between(error.n as f64, value, value - reach, value + reach))
+            let resolved = kind != ErrorKind::Bias || (value > Z_BAR * std_error && !decline.is_infinite());
+            // on a logarithmic axis, intervals of the logarithm
+            let times = if decline.is_infinite() { 1.0 } else { libm::exp(Z_BAR * std_error / value) };
+            let bar = Point::between(error.n as f64, value, value / times, value * times);
+            (resolved && value > decline.rounding(kind)).then_some(bar)
         };
         let points = decline.errors().iter().filter_map(point).collect();
-        series.push(Series { label, colour, style: Style::Markers(Marker::nth(i)), points });
+        series.push(Series { label, colour, style: Style::Markers(Marker::nth(i + i / 5)), points });
     }
     if kind != ErrorKind::Bias {
         series.extend(guide(declines, &series));
@@ -168,10 +169,10 @@ fn panel(declines: &[Decline], labels: &[String], kind: ErrorKind) -> Panel {
     }
 }
 
-/// A thin line of slope -1 through the first of the points.
+/// A thin line of slope -1 above the first of the points.
 fn guide(declines: &[Decline], series: &[Series]) -> Option<Series> {
     let most = declines.iter().flat_map(|d| d.marks.last()).max().map(|&n| n as f64)?;
-    let start = series.iter().flat_map(|s| s.points.first()).map(|p| p.x * p.y).reduce(f64::max)?;
+    let start = series.iter().flat_map(|s| s.points.first()).map(|p| 2.0 * p.x * p.y).reduce(f64::max)?;
     let points = vec![Point::new(1.0, start), Point::new(most, start / most)];
     Some(Series { label: "slope −1".to_owned(), colour: Colour::Grey, style: Style::Dotted, points })
 }

@@ -138,7 +138,8 @@ impl Density {
         let of_pass = match self.map.gather {
             Gather::Within { radius } => self.variance_within(radius, channel, counted),
             Gather::Nearest { .. } => self.variance_of_nearest(channel, counted),
-            Gather::Shrinking { .. } => None, // passes have one each
+            // passes have one each
+            Gather::Shrinking { .. } => self.hits(counted).is_none().then_some(0.0),
         };
         known(of_pass)
     }
