@@ -3,6 +3,7 @@
 use super::cell::Channels;
 use super::plan::{CellPlan, Overrides, Plan};
 use super::run::LOOKS_IN_ALL;
+use super::runs;
 use super::spec::Limits;
 use super::stakes;
 use super::study;
@@ -27,6 +28,10 @@ impl Plan {
         let runs = u64::from(self.spec.seeds.unwrap_or(1));
         for cell in &mut self.cells {
             cell.runs = runs;
+            if cell.traced {
+                cell.samples = runs::whole(cell, overrides);
+                continue;
+            }
             let limits = asked.iter().find(|(limits, _)| limits.covers(&cell.scene_label));
             match (overrides.samples, self.spec.max_samples, limits) {
                 (Some(samples), _, _) => cell.samples = samples,
@@ -50,6 +55,9 @@ impl Plan {
 
     /// What `--samples` must say for a cell to get the samples and blocks that it has.
     pub fn asking_for(&self, cell: &CellPlan) -> u64 {
+        if cell.traced {
+            return cell.samples; // whole runs
+        }
         let least = (cell.samples + 1).saturating_sub(cell.block).max(1);
         let same = |&n: &u64| whole_blocks(n, cell.pixels, self.blocks()) == (cell.samples, cell.block);
         (least..=cell.samples).rev().find(same).unwrap_or(cell.samples)

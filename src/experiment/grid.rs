@@ -4,6 +4,7 @@ use super::choices::{self, Choice};
 use super::error::Error;
 use super::plan::{CellPlan, LeftOut};
 use super::reach;
+use super::runs;
 use super::spec::{Grid, Spec, Streams};
 use crate::estimator::{Estimator, Roulette, Rule};
 use crate::faults::Fault;
@@ -46,6 +47,7 @@ pub fn resolve(spec: &Spec, file: &Path, source: &str) -> Result<Resolved, Error
         let why = resolved.left_out.first().map_or("an empty list of grids", |out| out.why.as_str());
         return Err(Error::Refused(format!("{}: {why} leaves nothing to run", file.display())));
     }
+    runs::are_there(spec, &resolved.cells).map_err(|(span, message)| at(span, message))?;
     Ok(resolved)
 }
 
@@ -66,6 +68,8 @@ fn grid_cells(
                 let whole = untermined.with(roulette.choice.value, pixels(&built));
                 lit(&whole, &built).map_err(|e| at(scene.span.clone(), e))?;
                 ends(&whole, &built).map_err(|e| at(roulette.span.clone(), e))?;
+                let run = runs::realizations(spec, grid, &whole, &estimator.span)
+                    .map_err(|(span, message)| at(span, message))?;
                 let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
                     .into_iter()
                     .flatten();
@@ -83,7 +87,8 @@ fn grid_cells(
                     roulette_label: roulette.choice.label.clone(),
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
                     samples: grid.samples.unwrap_or(spec.samples),
-                    block: 0,
+                    block: run.unwrap_or(0),
+                    traced: run.is_some(),
                     runs: 1,
                     pixels: pixels(&built),
                     rays: rays(&scene.choice.value, &built, &whole),

@@ -182,6 +182,18 @@ pub fn optional_count<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u32>, D:
     Ok(Some(v as u32))
 }
 
+/// Runs that samples are cut into.
+pub fn runs<'de, D: Deserializer<'de>>(d: D) -> Result<u64, D::Error> {
+    const LEAST: i64 = crate::stats::decay::MIN_RUNS as i64;
+    let v = i64::deserialize(d)?;
+    check(
+        (LEAST..=1_000_000).contains(&v),
+        v,
+        "a whole number of runs from 8 to 10^6; fewer give no interval",
+    )?;
+    Ok(v as u64)
+}
+
 /// A probability in (0, 1].
 pub fn probability<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     let v = f64::deserialize(d)?;

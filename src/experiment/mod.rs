@@ -2,32 +2,37 @@
 
 mod agree;
 pub mod allot;
+mod block;
 pub mod cell;
 pub mod choices;
 pub mod error;
 mod grid;
-mod image;
 pub mod input;
 pub mod ledger;
 pub mod making;
 pub mod mistake;
 pub mod pixels;
 pub mod plan;
+mod rates;
 pub mod reach;
 mod references;
 mod refute;
 pub mod row;
 pub mod run;
+mod runs;
 pub mod spec;
 mod stakes;
 pub mod store;
 pub mod study;
 mod subject;
+mod tiles;
 pub mod verdict;
 
 pub use cell::Cell;
 pub use error::Error;
+
 pub use plan::{CellPlan, Overrides, Plan};
+pub use rates::{Decline, Fall};
 pub use row::{Estimand, Row};
 pub use run::{run_cell, sample};
 pub use spec::Spec;

@@ -37,6 +37,12 @@ pub enum Estimand {
     Repeats,
     /// Correlation of successive blocks.
     Serial,
+    /// The power of the number of samples with which the mean squared error of a run falls.
+    RateMse,
+    /// The same of the variance.
+    RateVariance,
+    /// The same of the bias.
+    RateBias,
 }
 
 impl fmt::Display for Estimand {
@@ -56,6 +62,9 @@ impl fmt::Display for Estimand {
             Estimand::Length => "length",
             Estimand::Repeats => "repeats",
             Estimand::Serial => "serial",
+            Estimand::RateMse => "rate_mse",
+            Estimand::RateVariance => "rate_variance",
+            Estimand::RateBias => "rate_bias",
         })
     }
 }

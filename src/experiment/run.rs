@@ -56,7 +56,12 @@ pub fn run_cell(
             }
         };
         let finished: Vec<Block> = (first..last).into_par_iter().map(run).collect();
-        finished.iter().for_each(|block| cell.merge(block));
+        for block in &finished {
+            cell.merge(block);
+            if plan.traced {
+                cell.keep_trace(block);
+            }
+        }
         progress(finished.iter().map(|block| block.tally.rays as f64).sum());
         first = last;
         // two blocks at least, or there is no standard error
@@ -71,7 +76,8 @@ pub fn run_cell(
     Some(cell)
 }
 
-/// Samples an estimator of one's own: `samples` realizations in blocks of `block`, on the current thread pool.
+/// Samples an estimator of one's own: `samples` realizations in blocks of `block`, each of them a run, on the current
+/// thread pool.
 pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, samples: u64, block: u64) -> Cell {
     let draw = |number, pixel| address.stream(number, pixel);
     let blocks: Vec<Block> = (0..samples / block)
@@ -79,7 +85,10 @@ pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, sampl
         .map(|b| block_of(scene, estimator, &draw, &[], b * block..(b + 1) * block))
         .collect();
     let mut cell = Cell::default();
-    blocks.iter().for_each(|block| cell.merge(block));
+    for block in &blocks {
+        cell.merge(block);
+        cell.keep_trace(block);
+    }
     cell.finish();
     cell
 }

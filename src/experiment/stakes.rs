@@ -81,7 +81,7 @@ fn may_stop(plan: &Plan, cell: &CellPlan) -> bool {
     let here = |claim: &Claim| claim.scene().is_none_or(|scene| *scene == cell.scene_label);
     let compared = plan.spec.claim.iter().any(|c| matches!(c, Claim::Agree { .. }) && here(c));
     let judged = plan.spec.claim.iter().filter_map(Claim::unbiased).any(|l| l.covers(&cell.scene_label));
-    judged && !compared && cell.pixels == 1
+    judged && !compared && cell.pixels == 1 && !cell.traced
 }
 
 /// What the samples of a cell are like, in one channel, for planning how many are needed.
@@ -101,6 +101,8 @@ pub fn questions(plan: &Plan, claim: &Claim) -> usize {
         Claim::Tiles(_) if cell.pixels > 1 => 3 * tiles,
         Claim::Tiles(_) => 0,
         Claim::Variance(_) => 3,
+        Claim::Rate(_) if cell.traced => 9,
+        Claim::Rate(_) => 0,
         Claim::Cost(_) | Claim::Length(_) => 1,
         Claim::Independent(_) => 4,
     };

@@ -59,6 +59,7 @@ fn of_cell(plan: &Plan, index: usize, cell: &Cell, found: &mut Found) {
     subject.spread(&mut sheet);
     subject.image(&mut sheet);
     subject.process(&mut sheet);
+    subject.rates(&mut sheet);
 }
 
 /// Level that each question of a claim, by its index, has at least, before it is known how many will be asked.

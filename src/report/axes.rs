@@ -62,7 +62,7 @@ fn meaning(scene: &SceneKind, parameter: &str) -> Option<&'static str> {
         ("concentric_spheres", "radius") => "radius of the ball / radius of the sphere",
         ("dome", "fraction") => "fraction of a whole sphere",
         ("parallel_plates", "albedo") => "albedo of the lower plate",
-        ("point_in_sphere", "offset") => "offset of the light / radius of the sphere",
+        ("point_in_sphere" | "point_near_wall", "offset") => "offset of the light / radius of the sphere",
         ("pixel_edge", "distance") => "distance of the edge from the pixel's middle  [pixels]",
         ("pool_caustic", "distance") => "distance from under the light  [m]",
         ("lens_edge", "focus") => "focus: distance in focus  [m]",

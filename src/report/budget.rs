@@ -73,6 +73,7 @@ fn about(claim: &Claim) -> (&'static str, Option<f64>) {
         Claim::Tiles(l) => ("means of the image's 4 × 4 tiles", Some(l.margin)),
         Claim::Variance(l) => ("variance", Some(l.margin)),
         Claim::Cost(l) => ("rays a sample", Some(l.margin)),
+        Claim::Rate(l) => ("exponents with which errors fall (margin absolute)", Some(l.get_ref().margin)),
         Claim::Length(_) => ("lengths of paths", None),
         Claim::Independent(_) => ("independence of realizations", None),
         Claim::Agree { margin, .. } => ("mean, against another cell", Some(*margin)),

@@ -5,6 +5,7 @@ mod axes;
 mod budget;
 mod compare;
 mod curves;
+mod decline;
 pub mod difference;
 mod family;
 pub mod figure;
@@ -17,6 +18,7 @@ mod number;
 mod page;
 pub mod plots;
 mod replay;
+mod shares;
 pub mod study;
 mod summary;
 pub mod table;
@@ -44,8 +46,11 @@ pub fn write(
 ) -> Result<(), Error> {
     let lookup = Lookup::new(plan, rows);
     store.write("results.csv", &table::results(plan, cells, rows))?;
+    if cells.iter().flatten().any(|cell| !cell.traces.is_empty()) {
+        store.write("convergence.csv", &decline::csv(plan, cells))?;
+    }
     let mut drawn = Vec::new();
-    for plots::Named { name, figure } in plots::figures(&lookup) {
+    for plots::Named { name, figure } in plots::figures(&lookup, cells) {
         let svg = figure::write(&figure, &store.path().join(&name)).map_err(|e| failed(store, &e))?;
         drawn.push(Drawn { name, svg });
     }

@@ -133,7 +133,8 @@ fn provenance(lookup: &Lookup<'_>) -> Markup {
         pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) (samples(lookup)) }
         p {
             "furnace " (env!("CARGO_PKG_VERSION")) ", seed " (plan.spec.seed) ". The same bytes for any number of threads. "
-            a href="results.csv" { "results.csv" } ", " a href="timing.csv" { "timing.csv" } ", "
+            a href="results.csv" { "results.csv" } ", "
+            @if plan.cells.iter().any(|cell| cell.traced) { a href="convergence.csv" { "convergence.csv" } ", " } a href="timing.csv" { "timing.csv" } ", "
             a href="run.json" { "run.json" } "."
         }
     }

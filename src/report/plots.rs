@@ -4,9 +4,9 @@
 use super::curves::{self, Curve};
 use super::figure::{Axis, Colour, Figure, Marker, Panel, Point, Series, Style};
 use super::lookup::Lookup;
-use super::{axes, forest};
+use super::{axes, decline, forest, shares};
 use crate::experiment::spec::{Plot, Quantity};
-use crate::experiment::{CellPlan, Estimand};
+use crate::experiment::{Cell, CellPlan, Estimand};
 
 /// A figure and the name of its files.
 pub struct Named {
@@ -20,16 +20,20 @@ pub struct Named {
 pub const Z_BAR: f64 = 3.290_526_731_491_9; // 99.9 %
 
 /// All figures of a run.
-pub fn figures(lookup: &Lookup<'_>) -> Vec<Named> {
+pub fn figures(lookup: &Lookup<'_>, cells: &[Option<Cell>]) -> Vec<Named> {
     let mut figures = Vec::new();
     for plot in &lookup.plan.spec.plot {
         match plot {
             Plot::Over { parameter, show, series, log } => {
-                for cells in curves::groups(lookup, parameter, series) {
-                    figures.push(over(lookup, &cells, parameter, show, series, *log));
+                for group in curves::groups(lookup, parameter, series) {
+                    figures.push(over(lookup, &group, parameter, show, series, *log));
                 }
             }
             Plot::Bars { scene } => figures.extend(bars(lookup, scene)),
+            Plot::Shares { scene, of } => figures.extend(shares::figure(lookup, cells, scene, of)),
+            Plot::Convergence { scene, show } => {
+                figures.extend(decline::figure(lookup, cells, scene, show));
+            }
             Plot::Bias {} => {
                 let named = |figure| Named { name: "bias".to_owned(), figure };
                 figures.extend(forest::figure(lookup).map(named));

@@ -1,11 +1,11 @@
 //! Which truth is used: the one place that knows their order.
 
-use super::ClosedForm;
 use super::deterministic::Deterministic;
 use super::enclosure::Counted;
 use super::own::kind;
 use super::reference::{Reference, Stored};
-use crate::estimator::{Estimate, Estimator, Property};
+use super::{After, ClosedForm, Known};
+use crate::estimator::{Estimate, Estimator, Property, Rates};
 use crate::scene::library::SceneKind;
 use std::fmt;
 use std::sync::Arc;
@@ -146,6 +146,24 @@ impl Truth {
             (Origin::Stored(_), Property::Clamped { .. }) => None,
             (_, Property::Unbiased) => origin.mean(channel, counted),
         })
+    }
+
+    /// What the mean of the first `n` realizations is like, n being at most the passes of one picture.
+    pub fn after(&self, channel: usize, n: u64) -> After {
+        if let Some(closed) = self.theory() {
+            return closed.after(channel, n);
+        }
+        let (right, expected) = (self.mean(channel, Counted::All), self.expected(channel, Counted::All));
+        let bias = right.zip(expected).map(|(right, expected)| expected.value - right.value);
+        After { bias, variance: Known::Unknown }
+    }
+
+    /// How bias and variance fall in the long run, where the variance is finite.
+    pub fn rates(&self) -> Rates {
+        match self.property {
+            Property::Consistent { rates } => rates,
+            Property::Unbiased | Property::Clamped { .. } => Rates { variance: 1.0, bias: 0.0 },
+        }
     }
 
     /// The right mean over one of `tiles` x `tiles` squares of the image.

@@ -2,11 +2,11 @@
 
 mod photons;
 
-use super::Known;
 use super::enclosure::{Counted, Enclosure, Wall, average};
 use super::gallery::{self, Series, Tail};
 use super::moments::Central;
 use super::walk::Walk;
+use super::{After, Known};
 use crate::estimator::{Estimator, Rule, Technique};
 use crate::scene::library::{Patch, SceneKind, Setting, View};
 use crate::scene::{Points, Rgb, Sensor};
@@ -121,20 +121,40 @@ impl ClosedForm {
         }
     }
 
-    /// The mean of a density estimate: known where blurring changes nothing.
-    fn blurred(&self, channel: usize, counted: Counted) -> Option<f64> {
-        let density = self.density.as_ref()?;
-        let factor = density.factor()?;
-        let exact = (0..if density.samples_direct() { 2 } else { 1 }).map(Counted::Only);
-        let of_photons = |counted| factor * self.expected(channel, counted);
+    /// The mean of a density estimate, which blurs what it sees: of all maps that make one picture.
+    pub fn blurred(&self, channel: usize, counted: Counted) -> Option<f64> {
+        self.blurred_after(self.density.as_ref()?.passes(), channel, counted)
+    }
+
+    /// The same of the first `passes` maps.
+    fn blurred_after(&self, passes: u64, channel: usize, counted: Counted) -> Option<f64> {
+        let [direct, rest] = self.density.as_ref()?.factors(passes)?;
+        let of = |counted| self.expected(channel, counted);
+        let once = direct * of(Counted::Only(1));
         Some(match counted {
-            _ if exact.clone().any(|k| k == counted) => self.expected(channel, counted),
-            Counted::All | Counted::From(0) => {
-                let apart: f64 = exact.map(|k| (1.0 - factor) * self.expected(channel, k)).sum();
-                of_photons(Counted::All) + apart
-            }
-            Counted::Only(_) | Counted::From(_) => of_photons(counted),
+            _ if direct == 1.0 && rest == 1.0 => of(counted),
+            Counted::Only(0) => of(counted),
+            Counted::Only(1) => once,
+            Counted::All | Counted::From(0) => of(Counted::Only(0)) + once + rest * of(Counted::From(2)),
+            Counted::From(1) => once + rest * of(Counted::From(2)),
+            Counted::Only(_) | Counted::From(_) => rest * of(counted),
         })
+    }
+
+    /// What the mean of the first `n` realizations is like: of a picture whose passes differ, the first n of them.
+    pub fn after(&self, channel: usize, n: u64) -> After {
+        let expected = match &self.density {
+            None => Some(self.expected(channel, Counted::All)),
+            Some(_) => self.blurred_after(n, channel, Counted::All),
+        };
+        let variance = match &self.density {
+            Some(density) => density.variance_after(n, channel),
+            None => match self.central(channel, Counted::All, 2) {
+                Known::Value(variance) => Known::Value(variance / n as f64),
+                other => other,
+            },
+        };
+        After { bias: expected.map(|mean| mean - self.truth(channel, Counted::All)), variance }
     }
 
     /// The right value less what this estimator has no way to find.

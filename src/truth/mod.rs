@@ -42,6 +42,23 @@ pub enum Known {
     Unknown,
 }
 
+/// What theory says of the mean of so many realizations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct After {
+    /// Its expectation less the right value; none where that is not known.
+    pub bias: Option<f64>,
+    /// Its variance.
+    pub variance: Known,
+}
+
+impl After {
+    /// Mean squared error, where finite and known.
+    pub fn mse(&self) -> Option<f64> {
+        let bias = self.bias?;
+        Some(bias * bias + self.variance.value()?)
+    }
+}
+
 impl Known {
     /// The value, if theory gives one.
     pub fn value(self) -> Option<f64> {

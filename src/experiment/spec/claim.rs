@@ -2,6 +2,7 @@
 
 use crate::experiment::input;
 use serde::Deserialize;
+use toml::Spanned;
 
 /// What is claimed of every cell for which it is legal.
 #[derive(Clone, Debug, Deserialize)]
@@ -16,6 +17,9 @@ pub enum Claim {
     Variance(Limits),
     /// The rays a realization are theory's.
     Cost(Limits),
+    /// The error of cells that are cut into runs falls as theory says: as which power of the number of samples. The margin
+    /// is absolute, in exponents.
+    Rate(Spanned<Limits>),
     /// Paths have the lengths that theory's law of roulette gives; can be refuted, never shown.
     Length(Chance),
     /// Realizations are independent: no block repeats another or follows from the one before; can be refuted, never shown.
@@ -43,6 +47,7 @@ impl Claim {
     pub fn alpha(&self) -> f64 {
         match self {
             Claim::Unbiased(l) | Claim::Tiles(l) | Claim::Variance(l) | Claim::Cost(l) => l.alpha,
+            Claim::Rate(l) => l.get_ref().alpha,
             Claim::Length(c) | Claim::Independent(c) => c.alpha,
             Claim::Agree { alpha, .. } => *alpha,
         }
@@ -52,6 +57,7 @@ impl Claim {
     pub fn scene(&self) -> Option<&String> {
         match self {
             Claim::Unbiased(l) | Claim::Tiles(l) | Claim::Variance(l) | Claim::Cost(l) => l.scene.as_ref(),
+            Claim::Rate(l) => l.get_ref().scene.as_ref(),
             Claim::Length(c) | Claim::Independent(c) => c.scene.as_ref(),
             Claim::Agree { scene, .. } => scene.as_ref(),
         }
@@ -75,6 +81,11 @@ impl Claim {
     /// Its limits, if it claims the cost.
     pub fn cost(&self) -> Option<&Limits> {
         if let Claim::Cost(limits) = self { Some(limits) } else { None }
+    }
+
+    /// Its limits, if it claims rates.
+    pub fn rate(&self) -> Option<&Limits> {
+        if let Claim::Rate(limits) = self { Some(limits.get_ref()) } else { None }
     }
 }
 
@@ -135,8 +146,39 @@ pub enum Plot {
         /// Name of the scene.
         scene: String,
     },
+    /// Light that every cell of a scene found, relative to the first cell of one estimator, and how heavy its tails look.
+    Shares {
+        /// Name of the scene.
+        scene: String,
+        /// Label of the estimator that is taken for all of it.
+        of: String,
+    },
     /// Bias of every cell with its interval, against the margin.
     Bias {},
+    /// How the error of every cell of a scene that is cut into runs falls, in the red channel.
+    Convergence {
+        /// Name of the scene.
+        scene: String,
+        /// What is drawn, a panel each.
+        #[serde(default = "errors")]
+        show: Vec<ErrorKind>,
+    },
+}
+
+fn errors() -> Vec<ErrorKind> {
+    vec![ErrorKind::Mse, ErrorKind::Variance, ErrorKind::Bias]
+}
+
+/// A part of the error of a mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ErrorKind {
+    /// Mean squared error.
+    Mse,
+    /// Variance.
+    Variance,
+    /// Bias.
+    Bias,
 }
 
 fn channel() -> String {

@@ -8,7 +8,7 @@ mod primitives;
 mod scene;
 mod walk;
 
-pub use claim::{Claim, Limits, Plot, Quantity};
+pub use claim::{Claim, ErrorKind, Limits, Plot, Quantity};
 pub use lecture::{CausticSpec, DofSpec, ImageSpec, MotionSpec, WideImageSpec};
 pub use null::NullSpec;
 pub use photons::{LightTracingSpec, PhotonMapSpec, ProgressiveSpec};
@@ -50,6 +50,9 @@ pub struct Spec {
     /// Where theory gives a cell's variance, it gets as many realizations as its claim needs, up to this many.
     #[serde(default, deserialize_with = "input::optional_samples")]
     pub max_samples: Option<u64>,
+    /// Each cell's samples are cut into so many runs, whose means are looked at as they grow.
+    #[serde(default)]
+    pub runs: Option<Spanned<Runs>>,
     /// What is run: every combination within each grid.
     pub grid: Tables<Grid>,
     /// Stored images that scenes are compared with.
@@ -94,6 +97,19 @@ pub struct Grid {
     /// Realizations a cell of this grid, instead of the file's.
     #[serde(default, deserialize_with = "input::optional_samples")]
     pub samples: Option<u64>,
+    /// Runs that a cell of this grid is cut into, instead of the file's.
+    #[serde(default)]
+    pub runs: Option<Spanned<Runs>>,
+}
+
+/// A number of runs, which must be enough for an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Runs(pub u64);
+
+impl<'de> Deserialize<'de> for Runs {
+    fn deserialize<D: serde::Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        input::runs(d).map(Runs)
+    }
 }
 
 /// A stored image of a scene, used where theory has no closed form. It stands before the one that comes with the

@@ -8,6 +8,7 @@
 pub mod edge;
 pub mod gradient;
 mod kernel;
+pub mod near_wall;
 pub mod nearest;
 pub mod optimum;
 pub mod progressive;

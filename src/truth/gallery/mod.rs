@@ -17,6 +17,7 @@ mod moving_edge;
 mod parallel_plates;
 mod pixel_edge;
 mod point_in_sphere;
+pub mod point_near_wall;
 mod point_over_plane;
 mod polygon_light;
 mod pool_caustic;
@@ -36,7 +37,7 @@ use crate::scene::{Directions, Rgb};
 use std::ops::RangeInclusive;
 
 /// All of them.
-pub const EXHIBITS: [&Exhibit; 24] = [
+pub const EXHIBITS: [&Exhibit; 25] = [
     &disk_light::EXHIBIT,
     &polygon_light::EXHIBIT,
     &sphere_light::EXHIBIT,
@@ -45,6 +46,7 @@ pub const EXHIBITS: [&Exhibit; 24] = [
     &turned_light::EXHIBIT,
     &point_over_plane::EXHIBIT,
     &point_in_sphere::EXHIBIT,
+    &point_near_wall::EXHIBIT,
     &uniform_sky::EXHIBIT,
     &sky_over_plane::EXHIBIT,
     &concentric_spheres::EXHIBIT,

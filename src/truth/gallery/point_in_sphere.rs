@@ -27,15 +27,7 @@ pub const EXHIBIT: Exhibit = Exhibit {
     theory: Theory::Series {
         mean: theory,
         missed: |offset, estimator| (!estimator.samples_lights()).then(|| theory(offset)),
-        variance: |offset, estimator| {
-            let Estimator::Explicit(e) = estimator else { return None };
-            let q = match e.roulette.rule {
-                Rule::Constant { q } if sampled_by_cosine(e) && e.roulette.from == 0 => q,
-                _ => return None,
-            };
-            let variance = || Rgb::from_array([0, 1, 2].map(|c| sphere(offset, c).explicit_variance(q)));
-            e.roulette.clamp.is_none().then(variance)
-        },
+        variance: |offset, estimator| variance(estimator, |channel| sphere(offset, channel)),
     },
 };
 
@@ -45,9 +37,24 @@ fn sphere(offset: f64, channel: usize) -> PointInSphere {
 }
 
 fn theory(offset: f64) -> Series {
-    let wall = |channel| sphere(offset, channel);
+    seen(MU, ALBEDO, |channel| sphere(offset, channel))
+}
+
+/// What is seen of the wall, where light and wall point have the cosine `mu` between them from the centre.
+pub(super) fn seen(mu: f64, albedo: Rgb, wall: impl Fn(usize) -> PointInSphere) -> Series {
     let each = |f: &dyn Fn(PointInSphere) -> f64| Rgb::from_array([0, 1, 2].map(|c| f(wall(c))));
-    let direct = each(&|s| s.albedo * s.irradiance(MU)) / std::f64::consts::PI;
+    let direct = each(&|s| s.albedo * s.irradiance(mu)) / std::f64::consts::PI;
     let second = each(&|s| s.albedo * s.albedo * s.mean_irradiance()) / std::f64::consts::PI;
-    Series { first: vec![Rgb::ZERO, direct, second], ratio: ALBEDO }
+    Series { first: vec![Rgb::ZERO, direct, second], ratio: albedo }
+}
+
+/// Variance of one sample, the same at every point of the wall, with constant q.
+pub(super) fn variance(estimator: &Estimator, wall: impl Fn(usize) -> PointInSphere) -> Option<Rgb> {
+    let Estimator::Explicit(e) = estimator else { return None };
+    let q = match e.roulette.rule {
+        Rule::Constant { q } if sampled_by_cosine(e) && e.roulette.from == 0 => q,
+        _ => return None,
+    };
+    let variance = || Rgb::from_array([0, 1, 2].map(|c| wall(c).explicit_variance(q)));
+    e.roulette.clamp.is_none().then(variance)
 }

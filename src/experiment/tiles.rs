@@ -1,4 +1,4 @@
-//! One finished image: the variance of its pixels and the means of its tiles beside their truth.
+//! What is measured of a cell's image: its tiles, and the variance of its pixels.
 
 use super::cell::TILES;
 use super::row::Estimand;
