@@ -3,7 +3,7 @@
 
 use furnace::estimator::kernel::{Gather, Last};
 use furnace::estimator::particles::Particle;
-use furnace::estimator::photons::{Photon, Photons};
+use furnace::estimator::photons::Photons;
 use furnace::sampling::warp::Frame;
 use furnace::sampling::{Address, Stream};
 use furnace::scene::{Hit, Material, Rgb};
@@ -12,17 +12,15 @@ use std::f64::consts::PI;
 
 const WHITE: Material = Material { bsdf: furnace::scene::Bsdf::Lambert { albedo: Rgb::ONE }, le: Rgb::ZERO };
 
-/// A photon whose power is its number, so that it can be told from others.
-fn numbered(number: usize, p: DVec3) -> (DVec3, Photon) {
-    let hit =
-        Hit { p, frame: Frame::around(DVec3::Z), wo: DVec3::Z, material: &WHITE, le: Rgb::ZERO, surface: 0 };
-    let particle = Particle { power: Rgb::splat(number as f64), bounce: 0, diffuse: false };
-    Photon::landed(&hit, particle).expect("a white surface keeps photons")
-}
-
+/// Photons whose power is their number, so that they can be told apart.
 fn map(places: &[DVec3], gather: Gather) -> Photons {
-    let landed = places.iter().enumerate().map(|(i, &p)| numbered(i, p)).collect();
-    Photons::new(landed, places.len() as u64, gather, 0)
+    let mut map = Photons::new(places.len() as u64, gather, 0);
+    for (number, &p) in places.iter().enumerate() {
+        let (frame, wo, le) = (Frame::around(DVec3::Z), DVec3::Z, Rgb::ZERO);
+        let hit = Hit { p, frame, wo, material: &WHITE, le, surface: 0 };
+        map.add(&hit, Particle { power: Rgb::splat(number as f64), bounce: 0, diffuse: false });
+    }
+    map.grown()
 }
 
 fn places(name: &str, n: usize, stream: &mut Stream) -> Vec<DVec3> {

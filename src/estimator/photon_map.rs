@@ -48,11 +48,11 @@ impl Estimate for PhotonMap {
 
     fn begin(&self, realization: u64, cx: &mut Ctx<'_>) -> Photons {
         let particles = Particles { directions: self.directions, roulette: self.roulette };
-        let mut photons = Vec::new();
+        let mut map = Photons::new(self.photons, self.gather, realization);
         for _ in 0..self.photons {
-            particles.send(cx, &mut |_, x, particle| photons.extend(Photon::landed(x, particle)));
+            particles.send(cx, &mut |_, x, particle| map.add(x, particle));
         }
-        Photons::new(photons, self.photons, self.gather, realization)
+        map.grown()
     }
 
     #[inline]

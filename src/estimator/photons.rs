@@ -24,17 +24,15 @@ pub struct Photon {
 const SAME_SURFACE: f64 = 0.1;
 
 impl Photon {
-    /// The particle that met `x`, and where; none if nothing is reflected there.
     #[inline]
-    pub fn landed(x: &Hit<'_>, particle: Particle) -> Option<(DVec3, Photon)> {
-        let photon = Photon {
+    fn landed(x: &Hit<'_>, particle: Particle) -> Self {
+        Photon {
             power: particle.power.as_vec3(),
             wi: x.wo.as_vec3(),
             normal: x.frame.n.as_vec3(),
             bounce: particle.bounce.min(u32::from(u16::MAX)) as u16,
             diffuse: particle.diffuse,
-        };
-        (x.albedo() != Rgb::ZERO).then_some((x.p, photon))
+        }
     }
 
     /// The power that it stands for, if it stands for all light alone, in watts.
@@ -80,8 +78,10 @@ impl Photon {
 
 /// A map of photons.
 pub struct Photons {
-    /// `None` if no photon landed anywhere.
+    /// `None` if no photon landed anywhere, and until all have.
     tree: Option<ImmutableKdTree<f64, 3>>,
+    /// Where photons landed, until the tree holds it.
+    places: Vec<[f64; 3]>,
     photons: Vec<Photon>,
     sent: u64,
     gather: Gather,
@@ -101,13 +101,34 @@ pub struct Near<'a> {
 const PROBES: usize = 12;
 
 impl Photons {
-    /// The map of one realization, for which so many photons were `sent`.
-    pub fn new(landed: Vec<(DVec3, Photon)>, sent: u64, gather: Gather, realization: u64) -> Self {
-        let (places, photons): (Vec<[f64; 3]>, Vec<Photon>) =
-            landed.into_iter().map(|(p, photon)| (p.to_array(), photon)).unzip();
-        let tree = (!places.is_empty())
-            .then(|| ImmutableKdTree::new_from_slice(&places).expect("all photons are at finite places"));
-        Photons { tree, photons, sent, gather, radius: gather.radius(realization) }
+    /// The empty map of one realization, for which so many photons will be `sent`.
+    pub fn new(sent: u64, gather: Gather, realization: u64) -> Self {
+        let (places, photons) = (Vec::new(), Vec::new());
+        Photons { tree: None, places, photons, sent, gather, radius: gather.radius(realization) }
+    }
+
+    /// Keeps the particle that met `x`, unless nothing is reflected there.
+    #[inline]
+    pub fn add(&mut self, x: &Hit<'_>, particle: Particle) {
+        if x.albedo() == Rgb::ZERO {
+            return;
+        }
+        if self.photons.len() == self.photons.capacity() {
+            // by a quarter, not by as much again: maps are large
+            let more = self.photons.len() / 4 + 1024;
+            self.photons.reserve_exact(more);
+            self.places.reserve_exact(more);
+        }
+        self.places.push(x.p.to_array());
+        self.photons.push(Photon::landed(x, particle));
+    }
+
+    /// The map once all photons have landed, ready to be looked at.
+    pub fn grown(mut self) -> Self {
+        let places = std::mem::take(&mut self.places);
+        let grow = || ImmutableKdTree::new_from_slice(&places).expect("all photons are at finite places");
+        self.tree = (!places.is_empty()).then(grow);
+        self
     }
 
     /// How many photons landed.

@@ -19,7 +19,12 @@ pub enum Density {
     NoEmission,
     /// Divided by the number of photons that were stored, not sent.
     ByStored,
+    /// [`SENT`] photons, each with the power of all.
+    Undivided,
 }
+
+/// Photons that [`Density::Undivided`] sends.
+pub const SENT: u32 = 4;
 
 /// Radius of the density estimate over the sphere's.
 const REACH: f64 = 0.35;
@@ -30,6 +35,12 @@ pub fn estimate(density: Density, roulette: &Roulette, ray: &Ray, cx: &mut Ctx<'
     if density != Density::NoEmission {
         cx.add(0, x.le);
     }
+    let sent = if density == Density::Undivided { SENT } else { 1 };
+    (0..sent).for_each(|_| photon(density, roulette, &x, cx));
+}
+
+/// Sends one photon and adds the light that it leaves near `x`.
+fn photon(density: Density, roulette: &Roulette, x: &Hit<'_>, cx: &mut Ctx<'_>) {
     let Some((mut ray, mut power)) = send(cx) else { return };
     let reach = REACH * radius(cx.scene());
     let scale = x.albedo() / (PI * PI * reach * reach);

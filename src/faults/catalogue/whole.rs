@@ -86,4 +86,13 @@ pub const FAULTS: &[Fault] = &[
         effect: Effect::Mean,
         printed: true,
     },
+    Fault {
+        name: "photon_not_divided",
+        about: "four photons are sent, and each keeps the power of all",
+        seen: "lecture, slide \"Photon Mapping\": the sum has no 1 / N",
+        number: "A-20",
+        slip: Slip::Density(Density::Undivided),
+        effect: Effect::Mean,
+        printed: true,
+    },
 ];

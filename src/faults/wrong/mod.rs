@@ -5,7 +5,7 @@ mod gains;
 
 use super::averaging::LIMIT;
 use super::direct::Light;
-use super::photon::Density;
+use super::photon::{self, Density};
 use super::slip::{Averaging, Emission, Ending, HIDDEN, Slip};
 use super::survival::{DARK, Surviving};
 use super::{Effect, Faulty};
@@ -192,6 +192,7 @@ impl Closed {
         match density {
             Density::Sound => None,
             Density::NoEmission => Some(reflected),
+            Density::Undivided => Some(emitted + reflected * f64::from(photon::SENT)),
             // the mean cosine of light that comes from everywhere alike
             Density::Cosine => self.only().map(|_| emitted + reflected * (2.0 / 3.0)),
             Density::ByStored => self.only().map(|patch| {
