@@ -147,7 +147,7 @@ fn impossible_sensors_are_refused() {
 #[test]
 fn a_scene_without_light_is_refused_for_explicit_only() {
     all_refused(
-        &[("emission = 0", "this scene has no light, and `explicit` samples lights; give a surface")],
+        &[("emission = 0", "this scene has no light, and this estimator starts from lights; give a surface")],
         |_| file(GOOD_SHAPE, "0", GOOD_SENSOR, "explicit"),
     );
     let (status, stderr) = run(place(&file(GOOD_SHAPE, "0", GOOD_SENSOR, "implicit")).path());
@@ -160,4 +160,19 @@ fn a_scene_without_surfaces_is_refused() {
     let (start, end) = (text.find("[{ shape").unwrap(), text.find("], sensor").unwrap());
     let text = format!("{}[{}", &text[..start], &text[end..]);
     all_refused(&[("primitives = []", "a scene needs at least one primitive")], |_| text.clone());
+}
+
+#[test]
+fn impossible_metals_are_refused() {
+    let cases = [
+        ("{ glossy = { alpha = 0, eta = 1, k = 3 } }", "a roughness lies in [0.001, 1]"),
+        ("{ glossy = { alpha = 1.5, eta = 1, k = 3 } }", "a roughness lies in [0.001, 1]"),
+        ("{ glossy = { alpha = nan, eta = 1, k = 3 } }", "a roughness lies in [0.001, 1]"),
+        ("{ glossy = { alpha = 0.1, eta = 0, k = 0 } }", "eta and k of a metal must not both be 0"),
+        ("{ glossy = { alpha = 0.1, eta = -1, k = 3 } }", "a refractive index is finite and not negative"),
+        ("{ glossy = { alpha = 0.1, eta = 1 } }", "missing field `k`"),
+    ];
+    all_refused(&cases, |bsdf| {
+        file(GOOD_SHAPE, "0", GOOD_SENSOR, "implicit").replace("albedo = 0.5", &format!("bsdf = {bsdf}"))
+    });
 }

@@ -139,6 +139,9 @@ fn holds(enclosure: &Enclosure, estimator: &Estimator) {
         Estimator::Implicit(_) => (1, Technique::Direction, Pick::Power),
         Estimator::Recursive(e) => (e.samples, Technique::Direction, Pick::Power),
         Estimator::Explicit(e) => (1, e.technique, e.lights.pick),
+        Estimator::LightTracing(_) | Estimator::PhotonMap(_) => {
+            unreachable!("no chain of vertices from the eye")
+        }
     };
     let patches = enclosure.patches().to_vec();
     let sees = (0..patches.len()).map(|i| enclosure.seen_from(i).to_vec()).collect();

@@ -85,7 +85,7 @@ fn reach(estimator: &Estimator, last: usize) -> usize {
     match (estimator, estimator.property()) {
         (Estimator::Implicit(e), _) => 1 + usize::from(e.directions == Directions::Cosine),
         (_, Property::Clamped { bounces }) => bounces as usize,
-        (_, Property::Unbiased) => last,
+        (_, Property::Unbiased | Property::Consistent { .. }) => last,
     }
 }
 

@@ -7,6 +7,7 @@ use furnace::report::mitsuba::{Placement, export};
 use furnace::sampling::Address;
 use furnace::scene::camera::{Camera, Lens};
 use furnace::scene::geometry::{Disk, Rectangle, SpherePatch, Triangle};
+use furnace::scene::lecture::{Lecture, Source};
 use furnace::scene::library::{SceneKind, View};
 use furnace::scene::{Bsdf, Material, PointLight, Rgb, Scene, Sensor, Shape, Sky, Surface};
 use glam::{DMat4, DVec2, DVec3};
@@ -201,6 +202,14 @@ fn same_rays(sensor: &Node, scene: &Scene, place: &dyn Fn(DVec3) -> DVec3) {
                 assert!(d.truncate().length() < 1e-12 * d.z);
                 continue;
             }
+            let o = match &scene.sensor {
+                Sensor::Camera(camera) if camera.near > 0.0 => {
+                    // it starts where Mitsuba begins to see, and comes from the eye
+                    assert!((o.z / sensor.number("near_clip") - 1.0).abs() < 1e-12);
+                    o - d * (o.z / d.z)
+                }
+                _ => o,
+            };
             let focus = if sensor.kind() == "thinlens" {
                 assert!(o.z.abs() < 1e-12 && o.length() <= sensor.number("aperture_radius") * (1.0 + 1e-9));
                 sensor.number("focus_distance")
@@ -320,6 +329,8 @@ fn every_sensor() {
         Sensor::Camera(camera((5, 5))),
         Sensor::Camera(camera((7, 3))),
         Sensor::Camera(Camera { lens, ..camera((3, 4)) }),
+        Sensor::Camera(Camera { near: 2.5, ..camera((4, 3)) }),
+        Sensor::Camera(Camera { near: 2.5, lens, ..camera((4, 4)) }),
         Sensor::Parallel { center: at(2.0, 0.3, 0.1), direction: at(-0.8, 0.0, 0.6), half_u, half_v },
         Sensor::Parallel {
             center: at(2.0, 0.3, 0.1),
@@ -339,6 +350,14 @@ fn every_scene_of_the_library() {
     holds(&SceneKind::FurnaceBox { albedo, emission, view }.build());
     holds(&SceneKind::CornellBox { resolution: 6 }.build());
     holds(&SceneKind::CornellEmpty { resolution: 5 }.build());
+    let resolution = 5;
+    for source in [Source::Square { half: 0.05 }, Source::Point] {
+        holds(&SceneKind::Lecture(Lecture::CausticGlass { source, resolution }).build());
+    }
+    holds(&SceneKind::Lecture(Lecture::Indirect { resolution }).build());
+    holds(&SceneKind::Lecture(Lecture::VeachMis { resolution }).build());
+    holds(&SceneKind::Lecture(Lecture::Dof { aperture: 0.08, resolution }).build());
+    holds(&SceneKind::Lecture(Lecture::Motion { travel: 0.0, resolution }).build());
     for (tile, blocks) in (0..6).flat_map(|tile| [(tile, false), (tile, true)]) {
         holds(&SceneKind::CornellFlush { tile, blocks }.build());
     }
@@ -374,6 +393,11 @@ fn what_mitsuba_cannot_have_is_refused() {
     refuses(one(plate, white, Sensor::Camera(Camera { width: 5, ..camera })), "squares");
     let clear = Material { le: Rgb::ONE, ..materials()[4] };
     refuses(one(plate, clear, PROBE), "clear interface");
+    let lecture = |lecture: Lecture| SceneKind::Lecture(lecture).build();
+    let (source, resolution) = (Source::Point, 4);
+    refuses(lecture(Lecture::CausticMirror { source, resolution }), "no bands of a sphere");
+    refuses(lecture(Lecture::Smallpt { resolution }), "no bands of a sphere");
+    refuses(lecture(Lecture::Motion { travel: 0.5, resolution }), "moving surface");
     let sky = Sky::Cosine { radiance: Rgb::ONE, exponent: 1.0, up: DVec3::Z };
     refuses(Scene::lit_by(vec![Surface::new(plate, white)], &[], Some(sky), PROBE), "cosine");
 }

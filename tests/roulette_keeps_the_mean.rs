@@ -28,6 +28,8 @@ fn directions(estimator: &Estimator) -> Directions {
         Estimator::Implicit(e) => e.directions,
         Estimator::Explicit(e) => e.directions,
         Estimator::Recursive(e) => e.directions,
+        Estimator::LightTracing(e) => e.directions,
+        Estimator::PhotonMap(e) => e.directions,
     }
 }
 

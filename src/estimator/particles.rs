@@ -18,7 +18,7 @@ pub struct Particles {
 /// What a particle has been through.
 #[derive(Clone, Copy, Debug)]
 pub struct Particle {
-    /// The power that it carries [W].
+    /// The power that it carries, in watts.
     pub power: Rgb,
     /// How often it was scattered.
     pub bounce: u32,

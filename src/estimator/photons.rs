@@ -37,7 +37,7 @@ impl Photon {
         (x.albedo() != Rgb::ZERO).then_some((x.p, photon))
     }
 
-    /// The power that it stands for, if it stands for all light alone [W].
+    /// The power that it stands for, if it stands for all light alone, in watts.
     #[inline]
     pub fn power(&self) -> Rgb {
         self.power.as_dvec3()

@@ -246,8 +246,18 @@ impl Plan {
         }
         for plot in &self.spec.plot {
             match plot {
-                Plot::Bars { scene: name } | Plot::Convergence { scene: name, .. } if !scene(name) => {
+                Plot::Bars { scene: name }
+                | Plot::Convergence { scene: name, .. }
+                | Plot::Shares { scene: name, .. }
+                    if !scene(name) =>
+                {
                     return no_scene("a plot", name);
+                }
+                Plot::Shares { scene: name, of }
+                    if !self.cells.iter().any(|c| c.scene_label == *name && c.estimator_label == *of) =>
+                {
+                    let why = format!("a plot takes shares of `{of}`, which is not run in {name}");
+                    return Err(Error::Refused(format!("{}: {why}", self.name)));
                 }
                 Plot::Over { parameter, .. } if !self.swept.contains(parameter) => {
                     let known = self.swept.join(", ");

@@ -66,8 +66,11 @@ fn read(written: &ReferenceSpec, scene: &SceneKind, folder: &Path) -> Result<Ref
     let bad = |why: String| format!("{} is no reference: {why}", path.display());
     let bytes = fs::read(&path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
     let mut reference = Reference::read(&bytes).map_err(|e| bad(e.to_string()))?;
-    let image = scene.build().sensor.resolution().0 as usize;
-    reference.fits(image, TILES as usize).map_err(|e: BadReference| bad(e.to_string()))?;
+    let (width, height) = scene.build().sensor.resolution();
+    if width != height {
+        return Err(format!("references are square, and this scene's image has {width} x {height} pixels"));
+    }
+    reference.fits(width as usize, TILES as usize).map_err(|e: BadReference| bad(e.to_string()))?;
     reference.systematic = written.systematic;
     match &reference.provenance {
         Some(provenance) if provenance.scene != *scene => {

@@ -248,12 +248,15 @@ impl Subject<'_> {
         let mut row = self.row(Estimand::Variance, Some(channel), variance);
         row.against(&Value::exact(expected, Source::ClosedForm), Some(expected));
         let n = self.cell.cost.n as f64;
-        let fourth = central(4);
-        let known = |mu4: f64| ((mu4 - expected * expected * (n - 3.0) / (n - 1.0)) / n).sqrt();
-        // where theory does not know the fourth moment, samples may, unless their tail is heavy
-        let is_light = fourth == Known::Unknown && self.cell.tails[channel].guard().0 == Light::Green;
-        let of_sample = || self.cell.total[channel].variance_std_error().filter(|_| is_light);
-        let error = fourth.value().map(known).or_else(of_sample);
+        let (fourth, total) = (central(4), &self.cell.total[channel]);
+        let error = match fourth {
+            Known::Value(mu4) => Some(((mu4 - expected * expected * (n - 3.0) / (n - 1.0)) / n).sqrt()),
+            // samples may know what theory does not, unless their tail is heavy
+            Known::Unknown if self.cell.tails[channel].guard().0 == Light::Green => {
+                total.variance_std_error()
+            }
+            _ => None,
+        };
         row.std_error = error;
         if fourth == Known::Infinite {
             row.note = "infinite fourth moment: the variance has no interval, not judged".to_owned();

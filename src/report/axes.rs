@@ -14,6 +14,7 @@ pub fn title(quantity: Quantity) -> &'static str {
         Quantity::Efficiency => "Efficiency",
         Quantity::Zeros => "Paths that return zero",
         Quantity::Added => "What the last bounce adds",
+        Quantity::Mse => "Mean squared error",
     }
 }
 
@@ -26,6 +27,7 @@ pub fn of_quantity(quantity: Quantity) -> Axis {
         Quantity::Efficiency => Axis::log("1 / (variance × rays)  [(W m⁻² sr⁻¹)⁻²]"),
         Quantity::Zeros => Axis::linear("share of paths  [%]"),
         Quantity::Added => Axis::log("last bounce / right total  [%]"),
+        Quantity::Mse => Axis::log("(bias² + variance of one sample) / truth²"),
     }
 }
 
@@ -47,8 +49,14 @@ fn meaning(scene: &SceneKind, parameter: &str) -> Option<&'static str> {
     };
     Some(match (exhibit, parameter) {
         (_, "q") => "survival probability q",
+        (_, "k") => "k: photons gathered",
+        (_, "photons") => "photons sent for a map",
+        ("", "radius") => "radius of the gather",
         (_, "light_fraction") => "light_fraction: light's share of the sphere",
         (_, "reflectance") => "reflectance of the mirror",
+        (_, "light") => "half the edge of the light  [m]",
+        (_, "aperture") => "radius of the lens  [m]",
+        (_, "travel") => "way during the exposure  [m]",
         (_, "ior") => "index of refraction",
         ("disk_light" | "unequal_lights", "radius") => "radius of the light  [m]",
         ("concentric_spheres", "radius") => "radius of the ball / radius of the sphere",

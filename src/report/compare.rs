@@ -3,6 +3,7 @@
 use super::family::Family;
 use super::lookup::Lookup;
 use super::number;
+use crate::estimator::Estimator;
 use crate::experiment::Estimand;
 use crate::stats::Verdict;
 
@@ -130,7 +131,9 @@ pub fn missed(lookup: &Lookup<'_>, family: &Family) -> Vec<String> {
         let beside = points.iter().filter(|(_, cells)| cells.contains(&cell)).flat_map(|(_, cells)| cells);
         let possible =
             plan.estimator.roulette().clamp.is_none() || beside.clone().any(|&c| lookup.finds_all(c));
-        possible && !lookup.finds_all(cell)
+        // a photon map misses no light: it blurs it
+        let is_map = matches!(plan.estimator, Estimator::PhotonMap(_));
+        possible && !is_map && !lookup.finds_all(cell)
     };
     let mut told: Vec<(Vec<String>, String)> = Vec::new();
     for name in family.estimators(lookup) {

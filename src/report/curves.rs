@@ -145,6 +145,13 @@ pub fn measured(lookup: &Lookup<'_>, curve: &Curve, quantity: Quantity, paramete
                 let error = (zeros.mean * (1.0 - zeros.mean) / zeros.samples as f64).sqrt();
                 (100.0 * zeros.mean, 100.0 * error)
             }
+            Quantity::Mse => {
+                let (bias, error, scale) = (mean.bias?, mean.std_error?, mean.truth?.powi(-2));
+                let of_variance = row(Estimand::Variance, Some(curve.channel)).and_then(|r| r.std_error);
+                // the mean's own noise is in its square too
+                let square = bias * bias - error * error + mean.variance?;
+                (square * scale, of_variance.unwrap_or(0.0).hypot(2.0 * bias * error) * scale)
+            }
         };
         let noise_free = quantity == Quantity::Variance && lookup.is_noise_free(cell);
         (!noise_free).then(|| Point::between(x, y, y - Z_BAR * error, y + Z_BAR * error))
@@ -208,13 +215,18 @@ fn predicted(closed: &ClosedForm, quantity: Quantity, channel: usize, last: Opti
         Quantity::Efficiency => Some(1.0 / (variance()? * closed.rays()?)),
         Quantity::Bias => {
             let truth = closed.truth(channel, Counted::All);
-            Some(100.0 * (closed.expected(channel, Counted::All) - truth) / truth)
+            Some(100.0 * (closed.mean(channel, Counted::All)? - truth) / truth)
         }
         Quantity::Added => {
             let last = closed.expected(channel, Counted::Only(last?));
             Some(100.0 * last / closed.truth(channel, Counted::All))
         }
         Quantity::Zeros => None,
+        Quantity::Mse => {
+            let truth = closed.truth(channel, Counted::All);
+            let bias = closed.mean(channel, Counted::All)? - truth;
+            Some((bias * bias + variance()?) / (truth * truth))
+        }
     }
 }
 
@@ -242,6 +254,13 @@ pub fn infinite_region(lookup: &Lookup<'_>, curve: &Curve) -> Option<Region> {
         label: format!("infinite variance ({})", CHANNELS[curve.channel]),
         colour: curve.colour,
     })
+}
+
+/// The measured point of least error.
+pub fn least(points: &[Point], curve: &Curve, parameter: &str) -> Option<Mark> {
+    let least = points.iter().min_by(|a, b| a.y.total_cmp(&b.y))?;
+    let label = format!("best: {parameter} = {}", least.x);
+    Some(Mark::Point { x: least.x, y: least.y, label, colour: curve.colour })
 }
 
 /// The most efficient q.

@@ -1,6 +1,7 @@
 //! Cells that differ only in their estimator and in one parameter of their scene: what a sentence may compare.
 
 use super::lookup::Lookup;
+use crate::scene::lecture::Lecture;
 use crate::scene::library::SceneKind;
 use crate::truth::gallery;
 
@@ -44,6 +45,9 @@ fn swept(lookup: &Lookup<'_>, cell: usize) -> Option<&'static str> {
         SceneKind::Exhibit { name, .. } => gallery::find(name)?.parameter.name,
         SceneKind::IntegratingSphere { .. } => "light_fraction",
         SceneKind::CornellFlush { .. } => "tile",
+        SceneKind::Lecture(Lecture::CausticGlass { .. } | Lecture::CausticMirror { .. }) => "light",
+        SceneKind::Lecture(Lecture::Dof { .. }) => "aperture",
+        SceneKind::Lecture(Lecture::Motion { .. }) => "travel",
         _ => return None,
     };
     let is_swept = lookup.plan.swept.iter().any(|swept| swept == name);

@@ -18,6 +18,7 @@ mod number;
 mod page;
 pub mod plots;
 mod replay;
+mod shares;
 pub mod study;
 mod summary;
 pub mod table;

@@ -4,7 +4,7 @@
 use super::curves::{self, Curve};
 use super::figure::{Axis, Colour, Figure, Marker, Panel, Point, Series, Style};
 use super::lookup::Lookup;
-use super::{axes, decline, forest};
+use super::{axes, decline, forest, shares};
 use crate::experiment::spec::{Plot, Quantity};
 use crate::experiment::{Cell, CellPlan, Estimand};
 
@@ -30,6 +30,7 @@ pub fn figures(lookup: &Lookup<'_>, cells: &[Option<Cell>]) -> Vec<Named> {
                 }
             }
             Plot::Bars { scene } => figures.extend(bars(lookup, scene)),
+            Plot::Shares { scene, of } => figures.extend(shares::figure(lookup, cells, scene, of)),
             Plot::Convergence { scene, show } => {
                 figures.extend(decline::figure(lookup, cells, scene, show));
             }
@@ -124,6 +125,9 @@ fn draw(
         panel.series.push(Series { label: label.clone(), colour: curve.colour, style, points: theory });
     }
     let points = curves::measured(lookup, curve, quantity, parameter);
+    if quantity == Quantity::Mse {
+        panel.marks.extend(curves::least(&points, curve, parameter));
+    }
     let style = Style::Markers(Marker::nth(i));
     panel.series.push(Series { label, colour: curve.colour, style, points });
     if parameter == "q" && quantity != Quantity::Cost {

@@ -62,6 +62,13 @@ pub struct Camera {
     /// The lens; a pinhole if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lens: Option<Lens>,
+    /// Distance from the eye or lens, along the viewing direction, at which rays start: what is nearer is not seen.
+    #[serde(default, skip_serializing_if = "starts_at_the_eye")]
+    pub near: f64,
+}
+
+fn starts_at_the_eye(near: &f64) -> bool {
+    *near == 0.0
 }
 
 /// A thin lens, uniform over its area.
@@ -94,6 +101,7 @@ impl Camera {
             width,
             height,
             lens: None,
+            near: 0.0,
         }
     }
 
@@ -104,10 +112,14 @@ impl Camera {
         let sx = 2.0 * (f64::from(x) + u) / f64::from(self.width) - 1.0;
         let sy = 1.0 - 2.0 * (f64::from(y) + v) / f64::from(self.height);
         let d = self.forward + sx * self.right + sy * self.up;
-        let Some(lens) = self.lens else { return Ray { o: self.origin, d: d.normalize(), from: NOWHERE } };
+        let Some(lens) = self.lens else {
+            return Ray { o: self.origin + self.near * d, d: d.normalize(), from: NOWHERE };
+        };
         let (a, b) = disk(stream.u2());
         let offset = lens.radius * (a * self.right.normalize() + b * self.up.normalize());
-        Ray { o: self.origin + offset, d: (d * lens.focus - offset).normalize(), from: NOWHERE }
+        let to_focus = d * lens.focus - offset;
+        let o = self.origin + offset + (self.near / lens.focus) * to_focus;
+        Ray { o, d: to_focus.normalize(), from: NOWHERE }
     }
 }
 

@@ -80,7 +80,7 @@ impl Camera {
         });
         let from = self.origin + offset - p;
         let depth = -from.dot(self.forward);
-        if depth <= 0.0 {
+        if depth <= self.near {
             return None;
         }
         // where the line crosses the plane at unit distance, as the pinhole at the lens's centre would see it
@@ -100,7 +100,7 @@ impl Camera {
         let pixel_area =
             4.0 * self.right.length() * self.up.length() / (f64::from(self.width) * f64::from(self.height));
         is_seen.then(|| Connection {
-            to_sensor: from,
+            to_sensor: from * (1.0 - self.near / depth),
             wo: from / distance,
             pixel: y as u32 * self.width + x as u32,
             importance: 1.0 / (squared * cos * cos * cos * pixel_area),

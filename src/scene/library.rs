@@ -4,6 +4,7 @@
 use super::cornell::cornell;
 use super::cornell_flush::cornell_flush;
 use super::geometry::{Rectangle, SpherePatch};
+use super::lecture::Lecture;
 use super::{Material, PointLight, Rgb, Scene, Sensor, Shape, Sky, Surface};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -56,6 +57,8 @@ pub enum SceneKind {
         /// Whether the two blocks stand in it.
         blocks: bool,
     },
+    /// A scene of lectures, hard for some estimators and without a closed form.
+    Lecture(Lecture),
     /// A scene of the gallery, which has a closed form.
     Exhibit {
         /// Its name in the gallery.
@@ -133,6 +136,7 @@ impl SceneKind {
             SceneKind::CornellBox { resolution } => cornell(true, *resolution),
             SceneKind::CornellEmpty { resolution } => cornell(false, *resolution),
             SceneKind::CornellFlush { tile, blocks } => cornell_flush(*tile, *blocks),
+            SceneKind::Lecture(lecture) => lecture.build(),
             SceneKind::Exhibit { setting, .. } | SceneKind::Custom(setting) => setting.build(),
         }
     }

@@ -12,6 +12,7 @@ pub mod cornell_flush;
 pub mod fresnel;
 pub mod geometry;
 pub mod lanes;
+pub mod lecture;
 pub mod library;
 pub mod light;
 pub mod microfacet;

@@ -72,7 +72,7 @@ pub struct Truth {
 }
 
 enum Origin {
-    ClosedForm(ClosedForm),
+    ClosedForm(Box<ClosedForm>),
     Deterministic(Deterministic),
     Stored(Arc<Reference>),
 }
@@ -88,7 +88,7 @@ impl Truth {
         let own = || stored.iter().find(|r| made_by(r).is_some_and(|k| k != kind(estimator))).cloned();
         let image = || given().or_else(embedded).or_else(own);
         let origins: Vec<Origin> = match ClosedForm::of(scene, estimator) {
-            Some(closed) => vec![Origin::ClosedForm(closed)],
+            Some(closed) => vec![Origin::ClosedForm(Box::new(closed))],
             None => {
                 let solution = Deterministic::of(scene).map(Origin::Deterministic);
                 solution.into_iter().chain(image().map(Origin::Stored)).collect()
@@ -109,7 +109,7 @@ impl Truth {
     /// Theory of the estimator's moments and cost, where there is one.
     pub fn theory(&self) -> Option<&ClosedForm> {
         self.origins.iter().find_map(|origin| match origin {
-            Origin::ClosedForm(closed) => Some(closed),
+            Origin::ClosedForm(closed) => Some(&**closed),
             _ => None,
         })
     }
@@ -136,13 +136,10 @@ impl Truth {
     /// estimator where the bounces are not known one by one, and for a consistent one whose bias has no closed form.
     pub fn expected(&self, channel: usize, counted: Counted) -> Option<Value> {
         self.origins.iter().find_map(|origin| match (origin, self.property) {
-            (Origin::ClosedForm(closed), Property::Consistent { .. }) => {
-                Some(Value::exact(closed.blurred(channel, counted)?, Source::ClosedForm))
+            (Origin::ClosedForm(closed), _) => {
+                Some(Value::exact(closed.mean(channel, counted)?, Source::ClosedForm))
             }
             (_, Property::Consistent { .. }) => None,
-            (Origin::ClosedForm(closed), _) => {
-                Some(Value::exact(closed.expected(channel, counted), Source::ClosedForm))
-            }
             (Origin::Deterministic(solution), Property::Clamped { bounces }) => {
                 solution.clamped(channel, counted, bounces)
             }

@@ -81,6 +81,7 @@ impl ClosedForm {
             SceneKind::CornellBox { .. }
             | SceneKind::CornellEmpty { .. }
             | SceneKind::CornellFlush { .. }
+            | SceneKind::Lecture(_)
             | SceneKind::Custom { .. } => return None,
         };
         Some(ClosedForm { theory, estimator: *estimator, density: Density::of(scene, estimator) })
@@ -110,6 +111,14 @@ impl ClosedForm {
             Counted::From(k) => self.found(channel, Counted::From(k.max(bounces + 1))),
         };
         self.found(channel, counted) - left_out
+    }
+
+    /// The mean of this estimator, also where it blurs what it sees; `None` where nobody knows by how much.
+    pub fn mean(&self, channel: usize, counted: Counted) -> Option<f64> {
+        match self.estimator {
+            Estimator::PhotonMap(_) => self.blurred(channel, counted),
+            _ => Some(self.expected(channel, counted)),
+        }
     }
 
     /// The mean of a density estimate, which blurs what it sees: of all maps that make one picture.
@@ -160,7 +169,7 @@ impl ClosedForm {
     /// The central moment of the given order (2, 3 or 4) of one sample.
     pub fn central(&self, channel: usize, counted: Counted, order: usize) -> Known {
         if let Some(density) = &self.density {
-            return if order == 2 { density.variance(channel, counted) } else { Known::Unknown };
+            return density.central(channel, counted, order);
         }
         if let Theory::Series { variance, steady, .. } = &self.theory {
             let mean = self.expected(channel, counted);

@@ -72,6 +72,25 @@ fn forms_agree_with_points_on_a_sphere() {
     has_variance(&scaled(k - 1), nearest::variance_without_last(k64, n64), 0.08);
 }
 
+/// Photons whose weights are all 1: their hits are counted by the negative binomial law, and each count has the law above.
+#[test]
+fn random_counts_are_averaged_over() {
+    for (q, photons, k) in [(0.3, 4, 3), (0.5, 12, 12), (0.6, 10, 5)] {
+        let mut probability = f64::powi(1.0 - q, photons as i32);
+        let mut squares = 0.0;
+        for n in photons..photons + 250 {
+            squares += probability * (n * n) as f64 * inverse(k, n).1;
+            probability *= q * n as f64 / (n + 1 - photons) as f64;
+        }
+        let stored = Stored { albedo: q, q, photons, k };
+        let (truth, count) = (photons as f64 / (1.0 - q), k as f64);
+        let relative = |form: f64, mean: f64| form * form * squares / (truth * truth) - mean * mean;
+        let factor = count / (count - 1.0);
+        close(stored.variance_of_all(Counted::All), relative(count, factor), 1e-8);
+        close(stored.variance_without_last(Counted::All), relative(count - 1.0, 1.0), 1e-8);
+    }
+}
+
 /// One map of weighted hits; the estimates without the last hit and of all, for all hits, the second and those after the
 /// first, in units of the photons' power over the sphere's area.
 fn map(random: &mut Random, stored: &Stored) -> [f64; 6] {

@@ -6,7 +6,9 @@ use furnace::estimator::{
     DirectLight, Estimator, Explicit, Gather, Implicit, Kernel, Last, LightTracing, PhotonMap, Roulette,
     Rule, Technique,
 };
-use furnace::experiment::spec::{FurnaceSpec, SceneSpec, SphereSpec};
+use furnace::experiment::spec::{
+    CausticSpec, DofSpec, FurnaceSpec, ImageSpec, MotionSpec, SceneSpec, SphereSpec, WideImageSpec,
+};
 use furnace::experiment::{Error, choices, plan};
 use furnace::scene::library::SceneKind;
 use furnace::scene::{Directions, LightSampling};
@@ -36,13 +38,28 @@ fn scene_of_file(file: &str, label: &str, options: &Options) -> Result<SceneKind
 }
 
 /// All but those of the gallery.
-const NAMES: [&str; 6] =
-    ["cornell_box", "cornell_empty", "cornell_flush", "furnace", "furnace_box", "integrating_sphere"];
+const NAMES: [&str; 15] = [
+    "cornell_box",
+    "cornell_empty",
+    "cornell_flush",
+    "furnace",
+    "furnace_box",
+    "integrating_sphere",
+    "caustic_glass",
+    "caustic_glass_point",
+    "caustic_mirror",
+    "caustic_mirror_point",
+    "indirect",
+    "smallpt",
+    "veach_mis",
+    "dof",
+    "motion",
+];
 
 /// What can be said of a scene apart from its name.
 #[derive(Clone, Copy, Default)]
 pub struct Details {
-    /// Pixels along each edge of the image of a Cornell box.
+    /// Pixels along each edge of the image, if it has one; of `smallpt`, from top to bottom.
     pub resolution: Option<u32>,
     /// The tile of `cornell_flush`, 1 to 6.
     pub tile: Option<u8>,
@@ -57,16 +74,17 @@ pub fn named(name: &str, details: Details) -> Result<SceneKind, Error> {
         true => Err(Error::Refused(format!("{name} has no {option}"))),
         false => Ok(()),
     };
-    let kind = match name {
-        "cornell_box" | "cornell" => SceneKind::CornellBox { resolution: resolution.unwrap_or(32) },
-        "cornell_empty" => SceneKind::CornellEmpty { resolution: resolution.unwrap_or(32) },
-        "cornell_flush" => {
+    let kind = match (lecture(name, resolution), name) {
+        (Some(spec), _) => usual(&spec)?,
+        (None, "cornell_box" | "cornell") => SceneKind::CornellBox { resolution: resolution.unwrap_or(32) },
+        (None, "cornell_empty") => SceneKind::CornellEmpty { resolution: resolution.unwrap_or(32) },
+        (None, "cornell_flush") => {
             let tile = usize::from(tile.unwrap_or(1)) - 1;
             SceneKind::CornellFlush { tile, blocks }
         }
-        "furnace" => usual(&SceneSpec::Furnace(FurnaceSpec::default()))?,
-        "furnace_box" => usual(&SceneSpec::FurnaceBox(FurnaceSpec::default()))?,
-        "integrating_sphere" => usual(&SceneSpec::IntegratingSphere(SphereSpec::default()))?,
+        (None, "furnace") => usual(&SceneSpec::Furnace(FurnaceSpec::default()))?,
+        (None, "furnace_box") => usual(&SceneSpec::FurnaceBox(FurnaceSpec::default()))?,
+        (None, "integrating_sphere") => usual(&SceneSpec::IntegratingSphere(SphereSpec::default()))?,
         _ if EXHIBITS.iter().any(|exhibit| exhibit.name == name) => {
             usual(&SceneSpec::Exhibit { name: name.to_owned(), parameter: None })?
         }
@@ -82,7 +100,31 @@ pub fn named(name: &str, details: Details) -> Result<SceneKind, Error> {
 }
 
 fn is_image(name: &str) -> bool {
-    matches!(name, "cornell_box" | "cornell" | "cornell_empty")
+    matches!(name, "cornell_box" | "cornell" | "cornell_empty") || lecture(name, None).is_some()
+}
+
+/// A scene of lectures with its usual parameters.
+fn lecture(name: &str, resolution: Option<u32>) -> Option<SceneSpec> {
+    let image = || resolution.map_or_else(ImageSpec::default, |resolution| ImageSpec { resolution });
+    let caustic = |point| {
+        let usual = CausticSpec::default();
+        CausticSpec { point, resolution: resolution.unwrap_or(usual.resolution), ..usual }
+    };
+    Some(match name {
+        "caustic_glass" => SceneSpec::CausticGlass(caustic(false)),
+        "caustic_glass_point" => SceneSpec::CausticGlass(caustic(true)),
+        "caustic_mirror" => SceneSpec::CausticMirror(caustic(false)),
+        "caustic_mirror_point" => SceneSpec::CausticMirror(caustic(true)),
+        "indirect" => SceneSpec::Indirect(image()),
+        "smallpt" => {
+            let usual = WideImageSpec::default().resolution;
+            SceneSpec::Smallpt(WideImageSpec { resolution: resolution.unwrap_or(usual) })
+        }
+        "veach_mis" => SceneSpec::VeachMis(image()),
+        "dof" => SceneSpec::Dof(DofSpec { resolution: image().resolution, ..DofSpec::default() }),
+        "motion" => SceneSpec::Motion(MotionSpec { resolution: image().resolution, ..MotionSpec::default() }),
+        _ => return None,
+    })
 }
 
 fn usual(spec: &SceneSpec) -> Result<SceneKind, Error> {

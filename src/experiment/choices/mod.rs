@@ -1,5 +1,6 @@
 //! From what a file says to what it means: each written choice becomes one value for every point of its sweeps.
 
+mod lecture;
 mod photons;
 mod scene;
 

@@ -1,5 +1,6 @@
 //! Scenes as they are meant.
 
+use super::lecture::{self, caustic, dof, motion};
 use super::{Choice, points};
 use crate::experiment::input::Sweep;
 use crate::experiment::spec::{
@@ -8,6 +9,7 @@ use crate::experiment::spec::{
 };
 use crate::scene::camera::Camera;
 use crate::scene::geometry::{Disk, SpherePatch};
+use crate::scene::lecture::Lecture;
 use crate::scene::library::{Patch, Primitive, SceneKind, Setting};
 use crate::scene::{Bsdf, Material, PointLight, Rgb, Sensor, Shape, Sky};
 use crate::truth::gallery;
@@ -42,6 +44,26 @@ pub fn scenes(spec: &SceneSpec) -> Result<Vec<Choice<SceneKind>>, String> {
             };
             Ok(points("tile", tile).map(one).collect())
         }
+        SceneSpec::CausticGlass(c) => {
+            caustic(["caustic_glass", "caustic_glass_point"], c, |source, resolution| Lecture::CausticGlass {
+                source,
+                resolution,
+            })
+        }
+        SceneSpec::CausticMirror(c) => {
+            caustic(["caustic_mirror", "caustic_mirror_point"], c, |source, resolution| {
+                Lecture::CausticMirror { source, resolution }
+            })
+        }
+        SceneSpec::Indirect(i) => {
+            Ok(lecture::plain("indirect", Lecture::Indirect { resolution: i.resolution }))
+        }
+        SceneSpec::Smallpt(s) => Ok(lecture::plain("smallpt", Lecture::Smallpt { resolution: s.resolution })),
+        SceneSpec::VeachMis(v) => {
+            Ok(lecture::plain("veach_mis", Lecture::VeachMis { resolution: v.resolution }))
+        }
+        SceneSpec::Dof(d) => Ok(dof(d)),
+        SceneSpec::Motion(m) => Ok(motion(m)),
         SceneSpec::Exhibit { name, parameter } => exhibit(name, parameter.as_ref()),
         SceneSpec::Primitives(p) => plain(&p.name, primitives(p)?),
     }

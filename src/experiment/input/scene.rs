@@ -102,3 +102,26 @@ pub fn field_of_view<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
     check(v > 0.0 && v < 180.0, v, "a field of view lies inside (0, 180) degrees")?;
     Ok(v)
 }
+
+/// Pixels along the shorter edge of an image that is 4 : 3: 1 to 3072.
+pub fn wide_resolution<'de, D: Deserializer<'de>>(d: D) -> Result<u32, D::Error> {
+    let v = i64::deserialize(d)?;
+    check((1..=3072).contains(&v), v, "the resolution of a 4 : 3 image lies in 1 to 3072 rows of pixels")?;
+    Ok(v as u32)
+}
+
+/// Half the edge of a small light, to sweep over.
+pub fn half_edges<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Sweep>, D::Error> {
+    let wanted = "half the edge of the light lies in [0.0001, 0.3]; a point light is `point = true`";
+    swept(d, wanted, |v| (1e-4..=0.3).contains(&v)).map(Some)
+}
+
+/// The radius of a lens, to sweep over.
+pub fn apertures<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Sweep>, D::Error> {
+    swept(d, "the radius of the lens lies in (0, 0.5]", |v| v > 0.0 && v <= 0.5).map(Some)
+}
+
+/// How far something goes, to sweep over.
+pub fn travels<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Sweep>, D::Error> {
+    swept(d, "the board goes between 0 and 1 to the right", |v| (0.0..=1.0).contains(&v)).map(Some)
+}

@@ -146,6 +146,13 @@ pub enum Plot {
         /// Name of the scene.
         scene: String,
     },
+    /// Light that every cell of a scene found, relative to the first cell of one estimator, and how heavy its tails look.
+    Shares {
+        /// Name of the scene.
+        scene: String,
+        /// Label of the estimator that is taken for all of it.
+        of: String,
+    },
     /// Bias of every cell with its interval, against the margin.
     Bias {},
     /// How the error of every cell of a scene that is cut into runs falls, in the red channel.
@@ -194,4 +201,6 @@ pub enum Quantity {
     Zeros,
     /// What the last bounce of a clamped walk adds, relative to the right total.
     Added,
+    /// Squared bias and variance of one realization together, relative to the squared truth.
+    Mse,
 }

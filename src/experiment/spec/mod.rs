@@ -1,6 +1,7 @@
 //! An experiment file, exactly as it was written.
 
 mod claim;
+mod lecture;
 mod null;
 mod photons;
 mod primitives;
@@ -8,6 +9,7 @@ mod scene;
 mod walk;
 
 pub use claim::{Claim, ErrorKind, Limits, Plot, Quantity};
+pub use lecture::{CausticSpec, DofSpec, ImageSpec, MotionSpec, WideImageSpec};
 pub use null::NullSpec;
 pub use photons::{LightTracingSpec, PhotonMapSpec, ProgressiveSpec};
 pub use primitives::{BsdfSpec, PointSpec, PrimitiveSpec, PrimitivesSpec, SensorSpec, ShapeSpec, SkySpec};

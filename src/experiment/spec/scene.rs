@@ -1,6 +1,6 @@
 //! Scenes as files write them.
 
-use super::PrimitivesSpec;
+use super::{CausticSpec, DofSpec, ImageSpec, MotionSpec, PrimitivesSpec, WideImageSpec};
 use crate::experiment::input::{self, Sweep};
 use crate::scene::Rgb;
 use crate::scene::library::View;
@@ -22,6 +22,20 @@ pub enum SceneSpec {
     CornellEmpty(CornellSpec),
     /// See [`crate::scene::library::SceneKind::CornellFlush`].
     CornellFlush(FlushSpec),
+    /// See [`crate::scene::lecture::Lecture::CausticGlass`].
+    CausticGlass(CausticSpec),
+    /// See [`crate::scene::lecture::Lecture::CausticMirror`].
+    CausticMirror(CausticSpec),
+    /// See [`crate::scene::lecture::Lecture::Indirect`].
+    Indirect(ImageSpec),
+    /// See [`crate::scene::lecture::Lecture::Smallpt`].
+    Smallpt(WideImageSpec),
+    /// See [`crate::scene::lecture::Lecture::VeachMis`].
+    VeachMis(ImageSpec),
+    /// See [`crate::scene::lecture::Lecture::Dof`].
+    Dof(DofSpec),
+    /// See [`crate::scene::lecture::Lecture::Motion`].
+    Motion(MotionSpec),
     /// A scene of the gallery, which has a closed form; see [`crate::truth::gallery`].
     Exhibit {
         /// Its name in the gallery.

@@ -28,9 +28,12 @@ pub fn sensor(scene: &Scene, placement: Placement) -> Result<Element, String> {
                 return Err("parallel rays that run within their own rectangle cannot be exported".to_owned());
             }
             let sensor = Element::plugin("sensor", "orthographic").placed(columns, placement.point(*center));
-            clipped(sensor, scene, placement, *center)
+            clipped(sensor, scene, placement, (*center, None))
         }
-        Sensor::Camera(camera) => clipped(perspective(camera, placement)?, scene, placement, camera.origin),
+        Sensor::Camera(camera) => {
+            let near = (camera.near > 0.0).then_some(camera.near * placement.scale);
+            clipped(perspective(camera, placement)?, scene, placement, (camera.origin, near))
+        }
     };
     let (width, height) = scene.sensor.resolution();
     let film = Element::plugin("film", "hdrfilm")
@@ -63,10 +66,15 @@ fn perspective(camera: &Camera, placement: Placement) -> Result<Element, String>
     })
 }
 
-/// The same with its near and far plane around all that can be seen from `eye`.
-fn clipped(sensor: Element, scene: &Scene, placement: Placement, eye: DVec3) -> Element {
+/// The same with its near and far plane around all that can be seen from `eye`, or from its own near plane on.
+fn clipped(
+    sensor: Element,
+    scene: &Scene,
+    placement: Placement,
+    (eye, near): (DVec3, Option<f64>),
+) -> Element {
     let (low, high) = bounds(scene);
     let farthest = (eye - low).abs().max((eye - high).abs()).length() * placement.scale;
     let far = 2.0 * farthest;
-    sensor.number("near_clip", NEAR * far).number("far_clip", far)
+    sensor.number("near_clip", near.unwrap_or(NEAR * far)).number("far_clip", far)
 }

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 pub struct Emission {
     /// Its way.
     pub ray: Ray,
-    /// The power that it stands for, if it stands for all light alone [W].
+    /// The power that it stands for, if it stands for all light alone, in watts.
     pub power: Rgb,
 }
 

@@ -133,8 +133,19 @@ impl Density {
         }
     }
 
+    /// Central moment of one map and gather, where light is counted that was scattered so often. The area that holds k
+    /// photons has the moments of 1 / area up to order k - 1 only.
+    pub fn central(&self, channel: usize, counted: Counted, order: usize) -> Known {
+        match self.map.gather {
+            Gather::Nearest { k, .. } if k as usize <= order => return Known::Infinite,
+            _ if order != 2 => return Known::Unknown,
+            _ => {}
+        }
+        self.variance(channel, counted)
+    }
+
     /// Variance of one map and gather, where light is counted that was scattered so often.
-    pub fn variance(&self, channel: usize, counted: Counted) -> Known {
+    fn variance(&self, channel: usize, counted: Counted) -> Known {
         let of_pass = match self.map.gather {
             Gather::Within { radius } => self.variance_within(radius, channel, counted),
             Gather::Nearest { .. } => self.variance_of_nearest(channel, counted),

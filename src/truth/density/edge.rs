@@ -29,7 +29,7 @@ fn first_moment(s: f64, angle: f64, chord: f64) -> f64 {
     (2.0 * angle - s * chord - beside) / 3.0
 }
 
-/// Factor of every kernel at the tip of a wedge with that inner angle [rad], in (0, 2π]: 1/2 on a straight edge, 1/4 in a
+/// Factor of every kernel at the tip of a wedge with that inner angle \[rad\], in (0, 2π]: 1/2 on a straight edge, 1/4 in a
 /// square corner. K nearest neighbours have this times their own factor.
 pub fn wedge(angle: f64) -> f64 {
     debug_assert!(angle > 0.0 && angle <= 2.0 * PI, "a wedge of {angle} rad");

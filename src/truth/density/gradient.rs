@@ -4,7 +4,7 @@
 use super::Kernel;
 use crate::truth::quadrature::gauss_legendre;
 
-/// Mean over a disc of that radius [m] of a function with those iterated Laplacians at its centre: the value itself, its
+/// Mean over a disc of that radius \[m\] of a function with those iterated Laplacians at its centre: the value itself, its
 /// Laplacian [1/m²], the Laplacian of that [1/m^4], and so on. Exact for polynomials whose further ones vanish.
 ///
 /// Σ (r²/4)^n Δ^n f E s^2n / n!²; with the box kernel f + r²/8 Δf + r^4/192 Δ²f + ... (Pizzetti's formula).

@@ -31,7 +31,7 @@ impl Kernel {
         self.integral(0)
     }
 
-    /// Integral of the profile over the disc of that radius [m] in m²: photons' powers are divided by it.
+    /// Integral of the profile over the disc of that radius \[m\] in m²: photons' powers are divided by it.
     pub fn normalization(self, radius: f64) -> f64 {
         std::f64::consts::PI * radius * radius * self.share()
     }

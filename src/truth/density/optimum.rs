@@ -12,28 +12,28 @@ pub struct Spot {
     pub irradiance: f64,
     /// Its Laplacian along the surface [W m^-4], not 0 where an optimum is asked for.
     pub laplacian: f64,
-    /// Power of one photon [W]: that of the lights over the number of photons sent out.
+    /// Power of one photon \[W\]: that of the lights over the number of photons sent out.
     pub photon: f64,
 }
 
 impl Spot {
-    /// Bias [W m^-2] for that radius [m].
+    /// Bias [W m^-2] for that radius \[m\].
     pub fn bias(&self, kernel: Kernel, radius: f64) -> f64 {
         kernel.bias() * radius * radius * self.laplacian
     }
 
-    /// Variance [(W m^-2)²] for that radius [m], of uniform irradiance.
+    /// Variance [(W m^-2)²] for that radius \[m\], of uniform irradiance.
     pub fn variance(&self, kernel: Kernel, radius: f64) -> f64 {
         kernel.variance() * self.irradiance * self.photon / (PI * radius * radius)
     }
 
-    /// Mean squared error [(W m^-2)²] for that radius [m].
+    /// Mean squared error [(W m^-2)²] for that radius \[m\].
     pub fn error(&self, kernel: Kernel, radius: f64) -> f64 {
         let bias = self.bias(kernel, radius);
         bias * bias + self.variance(kernel, radius)
     }
 
-    /// The radius [m] with the least mean squared error: r^6 = 32 E `photon` / (π ΔE²) for the box kernel. There the
+    /// The radius \[m\] with the least mean squared error: r^6 = 32 E `photon` / (π ΔE²) for the box kernel. There the
     /// variance is twice the squared bias, and the error falls as the photons' number to the -2/3.
     pub fn best_radius(&self, kernel: Kernel) -> f64 {
         let slope = kernel.bias() * self.laplacian;

@@ -9,7 +9,7 @@ use libm::{exp, lgamma, tgamma};
 /// Radii that shrink from pass to pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shrinking {
-    /// Radius of the first pass [m], above 0.
+    /// Radius of the first pass \[m\], above 0.
     pub first: f64,
     /// α in (0, 1]: by how little radii shrink; 1 keeps them. The error is least in the long run at [`BEST_ALPHA`].
     pub alpha: f64,
@@ -19,13 +19,12 @@ pub struct Shrinking {
 pub const BEST_ALPHA: f64 = 2.0 / 3.0;
 
 impl Shrinking {
-    /// Squared radius [m²] of a pass, counted from 1.
+    /// Squared radius \[m²\] of a pass, counted from 1.
     pub fn square_radius(&self, pass: u64) -> f64 {
-        debug_assert!(pass >= 1);
-        self.first * self.first * ratio(pass as f64, self.alpha, 1.0) / tgamma(1.0 + self.alpha)
+        self.first * self.first * ratio(self.counted(pass), self.alpha, 1.0) / tgamma(1.0 + self.alpha)
     }
 
-    /// Mean squared radius [m²] of the first `passes`.
+    /// Mean squared radius \[m²\] of the first `passes`.
     pub fn mean_square_radius(&self, passes: u64) -> f64 {
         let (n, alpha) = (self.counted(passes), self.alpha);
         let sum = ratio(n, 1.0 + alpha, 1.0) / alpha - tgamma(alpha);
@@ -65,7 +64,7 @@ impl Shrinking {
     }
 
     fn counted(&self, passes: u64) -> f64 {
-        debug_assert!(passes >= 1, "a mean of no pass");
+        debug_assert!(passes >= 1, "passes count from 1");
         debug_assert!(self.alpha > 0.0 && self.alpha <= 1.0, "α of {}", self.alpha);
         passes as f64
     }

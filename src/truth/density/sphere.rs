@@ -68,7 +68,7 @@ impl Photons {
         }
     }
 
-    /// Expected irradiance [W m^-2] of lights with that power [W] in a sphere of that radius [m].
+    /// Expected irradiance [W m^-2] of lights with that power \[W\] in a sphere of that radius \[m\].
     pub fn irradiance(&self, light_power: f64, sphere_radius: f64, counted: Counted) -> f64 {
         light_power * self.mean(counted) / (4.0 * PI * sphere_radius * sphere_radius)
     }

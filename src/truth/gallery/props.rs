@@ -157,6 +157,7 @@ impl Frame {
             width: 1,
             height: 1,
             lens: self.lens,
+            near: 0.0,
         });
         setting(vec![primitive], sensor)
     }
