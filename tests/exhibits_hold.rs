@@ -91,7 +91,7 @@ fn of_direct_light() {
 
 #[test]
 fn of_points_and_skies() {
-    all_of(&["point_in_sphere", "point_over_plane", "uniform_sky", "sky_over_plane"]);
+    all_of(&["point_in_sphere", "point_near_wall", "point_over_plane", "uniform_sky", "sky_over_plane"]);
     holds(EXHIBITS.iter().find(|e| e.name == "sky_over_plane").unwrap(), 0.0);
 }
 

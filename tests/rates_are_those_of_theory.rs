@@ -70,15 +70,15 @@ fn intervals_hold_for_independent_samples() {
     }
 }
 
-/// Samples whose scale grows as i^0.2 and whose bias falls as i^-0.4: variance n^-0.6 and bias n^-0.4, both exactly
+/// Samples whose scale grows as i^0.2 and whose bias falls as i^-0.1: variance n^-0.6 and bias n^-0.1, both exactly
 /// known for finite n.
 #[test]
 fn intervals_hold_where_variance_and_bias_change() {
     let power = |i: u64, e: f64| libm::pow(i as f64, e);
-    let one = |stream: &mut Stream| running(stream, &MARKS, |i| 3.0 * power(i, -0.4), |i| power(i, 0.2));
+    let one = |stream: &mut Stream| running(stream, &MARKS, |i| 3.0 * power(i, -0.1), |i| power(i, 0.2));
     let over = |n: u64, f: &dyn Fn(u64) -> f64| (1..=n).map(f).sum::<f64>();
     let variance = MARKS.map(|n| over(n, &|i| power(i, 0.4)) / (n * n) as f64);
-    let bias = MARKS.map(|n| over(n, &|i| 3.0 * power(i, -0.4)) / n as f64);
+    let bias = MARKS.map(|n| over(n, &|i| 3.0 * power(i, -0.1)) / n as f64);
     let mse: Vec<f64> = variance.iter().zip(bias).map(|(v, b)| v + b * b).collect();
     let all = [1.0; 7];
     for (falling, curve, weights) in [
@@ -365,17 +365,9 @@ fn rates_are_reported_and_judged() {
     assert_eq!(rows.len(), 3 * 8, "after 1, 2, ..., 128 maps");
     assert_eq!((&rows[0][n], &rows[7][n]), ("1", "128"));
     assert!(rows.iter().all(|row| row[variance].parse::<f64>().unwrap() > 0.0 && !row[theory].is_empty()));
-    assert!(
-        place
-            .path()
-            .join("reports/x/furnace_progressive_albedo_photons_10_radius_0_3_convergence.svg")
-            .exists()
-            || fs::read_dir(place.path().join("reports/x")).unwrap().any(|e| e
-                .unwrap()
-                .file_name()
-                .to_string_lossy()
-                .ends_with("convergence.svg"))
-    );
+    let drawn = fs::read_dir(place.path().join("reports/x")).unwrap();
+    let mut names = drawn.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned());
+    assert!(names.any(|name| name.ends_with("convergence.svg")), "no figure");
     // fewer runs, not shorter ones
     let output = run(place.path(), GOOD, &["x", "--quick"]);
     assert!(output.status.code() < Some(2));

@@ -115,8 +115,8 @@ fn title(kind: ErrorKind) -> &'static str {
 
 /// "-1.00", or a dash where nothing was fitted.
 fn slope(fall: &Fall) -> String {
-    fall.measured
-        .map_or_else(|| "–".to_owned(), |measured| format!("{:.2}", measured.value).replace('-', "−"))
+    let two = |value: f64| format!("{value:.2}").replace("-0.00", "0.00").replace('-', "−");
+    fall.measured.map_or_else(|| "–".to_owned(), |measured| two(measured.value))
 }
 
 fn panel(declines: &[Decline], labels: &[String], kind: ErrorKind) -> Panel {

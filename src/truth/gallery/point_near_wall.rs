@@ -7,11 +7,11 @@ use super::{Exhibit, Parameter, Series, Theory};
 use crate::scene::{PointLight, Rgb, Sensor};
 use crate::truth::direct::point_light::PointInSphere;
 
-/// Radius of the sphere [m].
+/// Radius of the sphere (m).
 pub const RADIUS: f64 = 1.3;
 /// Albedo of the sphere.
 pub const ALBEDO: Rgb = Rgb::new(0.7, 0.5, 0.2);
-/// Intensity of the light [W sr^-1].
+/// Intensity of the light (W / sr).
 pub const INTENSITY: Rgb = Rgb::new(2.0, 3.0, 5.0);
 
 /// The wall behind the light.
