@@ -48,7 +48,7 @@ pub fn figure(lookup: &Lookup<'_>, cells: &[Option<Cell>], scene: &str, of: &str
         ),
         panel(
             "Tail of the image's mean",
-            Axis::linear("apparent tail index of a pass, worst channel"),
+            Axis::linear("apparent tail index of a pass, worst channel (10: no tail)"),
             vec![line(2.0, "infinite variance below")],
             tails,
             Colour::Vermilion,
