@@ -94,7 +94,7 @@ pub enum Pass {
     /// What particles have left on the image.
     Film(Film),
     /// Photons.
-    Photons(Photons),
+    Photons(Box<Photons>),
 }
 
 impl Estimator {
@@ -163,7 +163,7 @@ impl Estimate for Estimator {
         match self {
             Estimator::Recursive(_) | Estimator::Implicit(_) | Estimator::Explicit(_) => Pass::Nothing,
             Estimator::LightTracing(e) => Pass::Film(e.begin(realization, cx)),
-            Estimator::PhotonMap(e) => Pass::Photons(e.begin(realization, cx)),
+            Estimator::PhotonMap(e) => Pass::Photons(Box::new(e.begin(realization, cx))),
         }
     }
 

@@ -19,7 +19,7 @@ pub enum Density {
     NoEmission,
     /// Divided by the number of photons that were stored, not sent.
     ByStored,
-    /// [`SENT`] photons, each with the power of all.
+    /// Several photons, each with the power of all.
     Undivided,
 }
 
