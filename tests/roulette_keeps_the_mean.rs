@@ -118,7 +118,8 @@ fn q_is_what_the_rule_says() {
     assert_eq!(q(throughput(0.05), beta, albedo), 0.4); // green: 2 x 0.2
     assert_eq!(q(throughput(0.7), beta, albedo), 0.7);
     assert_eq!(q(throughput(0.05), 10.0 * beta, albedo), 1.0);
-    assert_eq!(q(throughput(0.05), Rgb::ZERO, albedo), 0.05);
+    assert_eq!(q(throughput(0.05), Rgb::new(1e-9, 0.0, 0.0), albedo), 0.05);
+    assert_eq!(q(throughput(0.05), Rgb::ZERO, albedo), 0.0); // nor does a path that carries nothing
     for rule in RULES.into_iter().chain([Rule::None, Rule::Constant { q: 2.7 }]) {
         assert_eq!(q(rule, beta, Rgb::ZERO), 0.0); // nothing goes on from black, not even at the floor
         for from in [1, 4] {

@@ -92,10 +92,13 @@ impl Walk {
         let light = self.light(x, cx, pick, point)?;
         let wi = light.to_light / light.distance;
         let cos_at_light = cos_at_light(cx.scene(), x, &light);
-        let cos = match self.slip {
-            Slip::Facing(Facing::BelowHorizon) => x.frame.n.dot(wi).abs(),
-            _ => x.frame.n.dot(wi),
+        let n = x.frame.n;
+        // where the light is taken to be
+        let seen = match self.slip {
+            Slip::Facing(Facing::BelowHorizon) if n.dot(wi) < 0.0 => wi - n * (2.0 * n.dot(wi)),
+            _ => wi,
         };
+        let cos = n.dot(seen);
         if cos <= 0.0 || !self.unshadowed(x, &light, wi, cx) {
             return None;
         }
@@ -103,17 +106,17 @@ impl Walk {
             Slip::Light(Light::Stale) => path.last.unwrap_or(x.material).bsdf,
             _ => x.material.bsdf,
         };
-        let (n, wo) = (x.frame.n, x.wo);
+        let wo = x.wo;
         let f = match self.slip {
-            Slip::Light(Light::Swapped) => bsdf.f(n, wi, wo),
-            Slip::Light(Light::NoPi) => bsdf.f(n, wo, wi) * PI,
-            _ => bsdf.f(n, wo, wi),
+            Slip::Light(Light::Swapped) => bsdf.f(n, seen, wo),
+            Slip::Light(Light::NoPi) => bsdf.f(n, wo, seen) * PI,
+            _ => bsdf.f(n, wo, seen),
         };
         let factor = match self.slip {
             Slip::Light(Light::NoCosine) => light.weight,
             _ => cos * light.weight,
         };
-        let weight = self.light_weight(x, &light, cos_at_light);
+        let weight = self.light_weight(x, &light, seen, cos_at_light);
         Some(DirectLight { radiance: f * light.le * factor, weight, cos_at_light })
     }
 

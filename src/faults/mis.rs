@@ -5,6 +5,7 @@ use crate::estimator::Ctx;
 use crate::sampling::PdfW;
 use crate::scene::sky::SKY;
 use crate::scene::{Hit, LightSample};
+use glam::DVec3;
 
 /// Mistakes in how two techniques are weighted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,8 +44,8 @@ impl Walk {
         })
     }
 
-    /// Weight of a sampled point on an emitter.
-    pub fn light_weight(&self, x: &Hit<'_>, light: &LightSample, cos_at_light: f64) -> f64 {
+    /// Weight of a sampled point on an emitter, which is taken to lie in the direction `wi`.
+    pub fn light_weight(&self, x: &Hit<'_>, light: &LightSample, wi: DVec3, cos_at_light: f64) -> f64 {
         let pdf = match self.weighting() {
             Some(Weighting::PointShared) => light.pdf.or(Some(PdfW(light.pmf))),
             Some(Weighting::PerArea | Weighting::PerAreaOnce) if light.surface != SKY => {
@@ -54,7 +55,6 @@ impl Walk {
             _ => light.pdf,
         };
         self.technique.of_light(pdf, || {
-            let wi = light.to_light / light.distance;
             let pdf = x.material.bsdf.pdf(self.directions, x.frame.n, x.wo, wi);
             match self.weighting() {
                 Some(Weighting::Scaled) => pdf.map(|pdf| PdfW(SCALE * pdf.0)),

@@ -91,11 +91,12 @@ impl Walk {
 
     /// The same by f cos / pdf, which is 0/0 in the plane of the surface.
     fn quotient(&self, x: &Hit<'_>, local: DVec3) -> Step {
-        let wi = x.frame.to_world(local);
-        let pdf = x.material.bsdf.pdf(self.directions, x.frame.n, x.wo, wi);
+        // in the surface's own coordinates, where such a direction lies in the plane exactly
+        let n = DVec3::Z;
+        let pdf = x.material.bsdf.pdf(self.directions, n, n, local);
         let PdfW(density) = pdf.unwrap_or(PdfW(1.0));
-        let weight = x.material.bsdf.f(x.frame.n, x.wo, wi) * local.z / density;
-        Step { ray: x.spawn(wi), weight, pdf }
+        let weight = x.material.bsdf.f(n, n, local) * local.z / density;
+        Step { ray: x.spawn(x.frame.to_world(local)), weight, pdf }
     }
 }
 
