@@ -45,6 +45,9 @@ fn every_experiment_plans_and_is_listed() {
     let mut count = 0;
     for entry in fs::read_dir(root.join("experiments")).unwrap() {
         let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
         let name = path.file_stem().unwrap().to_str().unwrap();
         let file: toml::Table = fs::read_to_string(&path).unwrap().parse().unwrap();
         let question = file["question"].as_str().unwrap();
