@@ -196,7 +196,7 @@ impl Density {
             Light::OfWall(of_wall) => {
                 let scale = wall[channel] * of_wall?.1[channel];
                 let photons = Photons::uniform(albedo, q);
-                Some(scale * scale * photons.variance(map.kernel.into(), relative, map.photons, hits))
+                Some(scale * scale * photons.variance(map.kernel, relative, map.photons, hits))
             }
             Light::Near(height) => {
                 let near = NearWall { albedo, q, nearest: self.nearest(height, radius) };

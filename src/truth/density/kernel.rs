@@ -1,19 +1,8 @@
 //! How much a photon counts, by its distance from the point of interest.
 
-/// A radial kernel on a disc of radius r, as a function of s = distance / r in [0, 1]; nothing counts beyond.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kernel {
-    /// 1: all photons count alike.
-    Box,
-    /// 1 - s/c [Jensen 2001, Realistic Image Synthesis Using Photon Mapping, "cone filter"].
-    Cone {
-        /// At least 1; the box kernel in the limit of large c.
-        c: f64,
-    },
-    /// 1 - s² [Epanechnikov 1969, Non-Parametric Estimation of a Multivariate Probability Density].
-    Epanechnikov,
-}
+pub use crate::estimator::Kernel;
 
+/// What theory says of a kernel on a disc of radius r, as a function of s = distance / r in [0, 1]; nothing counts beyond.
 impl Kernel {
     /// Weight at `s` = distance / radius relative to that of a photon at the centre, in [0, 1]; 0 for `s` above 1.
     pub fn profile(self, s: f64) -> f64 {
@@ -69,16 +58,6 @@ impl Kernel {
                 1.0 / (n + 1.0) - 2.0 / ((2.0 * n + 3.0) * c)
             }
             Kernel::Epanechnikov => 1.0 / ((n + 1.0) * (n + 2.0)),
-        }
-    }
-}
-
-impl From<crate::estimator::Kernel> for Kernel {
-    fn from(kernel: crate::estimator::Kernel) -> Self {
-        match kernel {
-            crate::estimator::Kernel::Box => Kernel::Box,
-            crate::estimator::Kernel::Cone { c } => Kernel::Cone { c },
-            crate::estimator::Kernel::Epanechnikov => Kernel::Epanechnikov,
         }
     }
 }
