@@ -116,7 +116,7 @@ fn connections_are_the_adjoint_of_rays() {
     };
     let (origin, forward) = (DVec3::new(0.1, -0.2, 0.9), DVec3::new(0.1, 0.05, -1.0).normalize());
     let camera = Camera::pinhole(origin, forward, DVec3::Y, 40.0, (3, 2));
-    let lens = Camera { lens: Some(Lens { radius: 0.15, focus: 1.1 }), ..camera };
+    let lens = Camera { lens: Some(Lens { radius: 0.3, focus: 1.7 }), ..camera };
     let parallel = Sensor::Parallel {
         center: DVec3::new(0.1, 0.0, 0.8),
         direction: DVec3::new(0.2, 0.1, -1.0).normalize(),
