@@ -50,7 +50,11 @@ impl Estimate for PhotonMap {
         let particles = Particles { directions: self.directions, roulette: self.roulette };
         let mut map = Photons::new(self.photons, self.gather, realization);
         for _ in 0..self.photons {
-            particles.send(cx, &mut |_, x, particle| map.add(x, particle));
+            particles.send(cx, &mut |_, x, particle| {
+                if particle.bounce > 0 || !self.leaves_out_direct() {
+                    map.add(x, particle);
+                }
+            });
         }
         map.grown()
     }
@@ -66,6 +70,12 @@ impl Estimate for PhotonMap {
 }
 
 impl PhotonMap {
+    /// Whether photons that come straight from a light need not be stored: nobody gathers them, and they do not decide how
+    /// far the others are gathered.
+    fn leaves_out_direct(&self) -> bool {
+        self.direct == DirectLight::Sampled && !matches!(self.gather, Gather::Nearest { .. })
+    }
+
     /// Follows a path from the eye to where photons lie; `rays` are sent on from there.
     fn look(&self, map: &Photons, mut ray: Ray, mut beta: Rgb, mut bounce: u32, rays: u32, cx: &mut Ctx<'_>) {
         let is_first = bounce == 0; // later on, emission was found before as direct light or a caustic

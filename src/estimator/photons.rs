@@ -114,8 +114,8 @@ impl Photons {
             return;
         }
         if self.photons.len() == self.photons.capacity() {
-            // by a quarter, not by as much again: maps are large
-            let more = self.photons.len() / 4 + 1024;
+            // by a half, not by as much again: maps are large
+            let more = self.photons.len() / 2 + 1024;
             self.photons.reserve_exact(more);
             self.places.reserve_exact(more);
         }
