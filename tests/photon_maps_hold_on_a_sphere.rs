@@ -83,6 +83,9 @@ fn the_nearest_with_the_last() {
 fn direct_light_sampled_and_final_gathering() {
     let direct = PhotonMap { direct: DirectLight::Sampled, ..by_radius(Kernel::Box) };
     holds(&furnace(), direct, 20_000, 1.0, 0.03);
+    // the nearest are looked for among all photons, and those of direct light then left out
+    let gather = Gather::Nearest { k: 9, last: Last::LeftOut };
+    holds(&furnace(), PhotonMap { photons: 200, gather, ..direct }, 20_000, 1.0, 0.03);
     for map in [direct, by_radius(Kernel::Box)] {
         holds(&furnace(), PhotonMap { final_gather: 3, ..map }, 20_000, 1.0, 0.03);
     }
@@ -108,9 +111,11 @@ fn patches_do_not_matter_within_a_radius() {
 #[test]
 fn a_clamp_holds_for_photons() {
     let roulette = Roulette { rule: Rule::None, from: 0, clamp: Some(2) };
-    let cell = cell(&furnace(), PhotonMap { roulette, ..by_radius(Kernel::Box) }, 2000);
-    for (bin, of_bin) in cell.bounces.iter().enumerate() {
-        assert_eq!(of_bin[0].mean > 0.0, bin <= 2, "{bin}");
+    for final_gather in [0, 2] {
+        let map = PhotonMap { roulette, final_gather, ..by_radius(Kernel::Box) };
+        for (bin, of_bin) in cell(&furnace(), map, 2000).bounces.iter().enumerate() {
+            assert_eq!(of_bin[0].mean > 0.0, bin <= 2, "{final_gather} {bin}");
+        }
     }
 }
 
