@@ -9,7 +9,7 @@
 //! Every arrow is one function, every word a plain struct. Imports go downwards only (`tests/layers.rs` holds this):
 //!
 //! ```text
-//! bin -> report -> experiment -> { faults -> truth, stats };   faults, truth -> estimator -> scene -> sampling
+//! bin -> report -> experiment -> { faults -> truth, fast, stats };   faults, truth, fast -> estimator -> scene -> sampling
 //! ```
 //!
 //! To test an estimator of your own, implement [`estimator::Estimate`] and look at `examples/my_estimator.rs`.
@@ -46,6 +46,8 @@ pub mod sampling;
 pub mod scene;
 
 pub mod estimator;
+
+pub mod fast;
 
 pub mod stats;
 pub mod truth;

@@ -5,22 +5,28 @@
 //! that passes passes always. Each of the ALARMS statistics is held to its share, one part in ALARMS.
 
 use furnace::sampling::{Address, Stream};
-use rand::Rng;
+use rand::{Rng, SeedableRng};
 use rand_pcg::{Pcg32, Pcg64Mcg};
+use rand_xoshiro::Xoshiro128PlusPlus;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Statistics tested here: 2 moments, 53 bits, 4 correlations and as many tables of pairs, rounded up.
-const ALARMS: f64 = 64.0;
-/// Two-sided bound of a normal variable for a false alarm probability of 1e-9 / 64.
-const SIGMAS: f64 = 6.66;
+/// Statistics tested here: for wide and narrow streams each 2 moments, 53 bits or 24, 4 correlations and as many tables of
+/// pairs, rounded up.
+const ALARMS: f64 = 128.0;
+/// Two-sided bound of a normal variable for a false alarm probability of 1e-9 / 128.
+const SIGMAS: f64 = 6.77;
 const N: u64 = 1 << 18;
 
 fn address() -> Address {
     Address::of(&["streams_are_reproducible"])
 }
 
+/// A stream of either kind.
+type Draw = fn(&Address, u64, u64) -> Stream;
+const KINDS: [(Draw, usize); 2] = [(Address::stream, 53), (Address::narrow_stream, 24)];
+
 /// First numbers of consecutive streams and of the streams next to them in each coordinate.
-fn neighbours() -> [(&'static str, Vec<(f64, f64)>); 4] {
+fn neighbours(draw: Draw) -> [(&'static str, Vec<(f64, f64)>); 4] {
     let pairs = |f: &dyn Fn(u64) -> (Stream, Stream)| {
         let first = |k| {
             let (mut a, mut b) = f(k);
@@ -29,12 +35,12 @@ fn neighbours() -> [(&'static str, Vec<(f64, f64)>); 4] {
         (0..N).map(first).collect::<Vec<_>>()
     };
     let other = Address::of(&["streams_are_reproducible", ""]);
-    let at = |k, pixel| address().stream(k, pixel);
+    let at = |k, pixel| draw(&address(), k, pixel);
     [
         ("realization", pairs(&|k| (at(k, 0), at(k + 1, 0)))),
         ("pixel", pairs(&|k| (at(7, k), at(7, k + 1)))),
         ("swapped", pairs(&|k| (at(k, k + 1), at(k + 1, k)))),
-        ("key", pairs(&|k| (at(k, 3), other.stream(k, 3)))),
+        ("key", pairs(&|k| (at(k, 3), draw(&other, k, 3)))),
     ]
 }
 
@@ -47,6 +53,22 @@ fn the_generator_is_pcg() {
     let mut mcg = Pcg64Mcg::new(42);
     let golden = [0x63b4_a3a8_13ce_700a, 0x3829_5420_0617_ab24, 0xa7fd_85ae_3fe9_50ce];
     assert_eq!(golden.map(|_| mcg.next_u64()), golden);
+}
+
+/// Narrow streams are xoshiro128++ as its authors' generator gives it, started from the address, 24 bits of each number.
+#[test]
+fn narrow_streams_are_xoshiro() {
+    for (realization, pixel) in [(0, 0), (1, 0), (0, 1), (u64::MAX, 7)] {
+        let mut narrow = address().narrow_stream(realization, pixel);
+        let words = narrow.narrow_state().unwrap();
+        let seed: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let mut published = Xoshiro128PlusPlus::from_seed(seed.try_into().unwrap());
+        for _ in 0..1000 {
+            let number = narrow.u1() * f64::from(1 << 24);
+            assert_eq!(number, f64::from(published.next_u32() >> 8));
+        }
+    }
+    assert_eq!(address().stream(0, 0).narrow_state(), None);
 }
 
 /// 2^53 u1 of the first draws, computed by an independent program (Python: hashlib and integers of any size).
@@ -104,26 +126,28 @@ fn no_two_streams_begin_alike() {
     }
 }
 
-/// Every number is a multiple of 2^-53 below 1, and each of its 53 bits is set half of the time in the first numbers of
+/// Every number is a multiple of 2^-53 below 1, or of 2^-24, and each of its bits is set half of the time in the first numbers of
 /// consecutive streams, whose mean and variance are 1/2 and 1/12. Sees a mean off by 0.004, a bit by 0.007.
 #[test]
 fn first_numbers_are_uniform() {
     let n = N as f64;
-    let (mut sum, mut squares, mut set) = (0.0, 0.0, [0u32; 53]);
-    for k in 0..N {
-        let u = address().stream(k, 0).u1();
-        let scaled = u * (1u64 << 53) as f64;
-        assert!((0.0..1.0).contains(&u) && scaled.fract() == 0.0, "{u}");
-        sum += u - 0.5;
-        squares += (u - 0.5).powi(2) - 1.0 / 12.0;
-        (0..53).for_each(|bit| set[bit] += (scaled as u64 >> bit & 1) as u32);
-    }
-    // variances of u - 1/2 and of its square: 1/12 and 1/80 - 1/144 = 1/180
-    let (mean, variance) = (sum / (n / 12.0).sqrt(), squares / (n / 180.0).sqrt());
-    assert!(mean.abs() < SIGMAS && variance.abs() < SIGMAS, "{mean} {variance}");
-    for (bit, set) in set.into_iter().enumerate() {
-        let z = (2.0 * f64::from(set) - n) / n.sqrt();
-        assert!(z.abs() < SIGMAS, "bit {bit}: {z}");
+    for (draw, bits) in KINDS {
+        let (mut sum, mut squares, mut set) = (0.0, 0.0, vec![0u32; bits]);
+        for k in 0..N {
+            let u = draw(&address(), k, 0).u1();
+            let scaled = u * (1u64 << bits) as f64;
+            assert!((0.0..1.0).contains(&u) && scaled.fract() == 0.0, "{u}");
+            sum += u - 0.5;
+            squares += (u - 0.5).powi(2) - 1.0 / 12.0;
+            (0..bits).for_each(|bit| set[bit] += (scaled as u64 >> bit & 1) as u32);
+        }
+        // variances of u - 1/2 and of its square: 1/12 and 1/80 - 1/144 = 1/180
+        let (mean, variance) = (sum / (n / 12.0).sqrt(), squares / (n / 180.0).sqrt());
+        assert!(mean.abs() < SIGMAS && variance.abs() < SIGMAS, "{mean} {variance}");
+        for (bit, set) in set.into_iter().enumerate() {
+            let z = (2.0 * f64::from(set) - n) / n.sqrt();
+            assert!(z.abs() < SIGMAS, "bit {bit} of {bits}: {z}");
+        }
     }
 }
 
@@ -132,7 +156,7 @@ fn first_numbers_are_uniform() {
 fn neighbouring_streams_are_independent() {
     const CELLS: usize = 32;
     let n = N as f64;
-    for (name, pairs) in neighbours() {
+    for (name, pairs) in KINDS.into_iter().flat_map(|(draw, _)| neighbours(draw)) {
         let correlation = pairs.iter().map(|(a, b)| 12.0 * (a - 0.5) * (b - 0.5)).sum::<f64>() / n;
         assert!(correlation.abs() * n.sqrt() < SIGMAS, "{name}: correlation {correlation}");
         let mut counts = [0u32; CELLS * CELLS];

@@ -23,7 +23,7 @@ pub use mis::{Heuristic, Technique};
 pub use photon_map::{DirectLight, PhotonMap};
 pub use photons::Photons;
 pub use recursive::Recursive;
-pub use roulette::{Roulette, Rule};
+pub use roulette::{Number, Roulette, Rule};
 
 use crate::scene::{Directions, LightSampling, Pick, Ray};
 use serde::{Deserialize, Serialize};

@@ -65,11 +65,51 @@ impl Roulette {
         if bounce < self.from {
             return 1.0;
         }
-        match self.rule {
-            Rule::None => 1.0,
-            Rule::Constant { q } => q,
-            Rule::Albedo => albedo.max_element(),
-            Rule::Throughput { floor } => (beta * albedo).max_element().clamp(floor, 1.0),
+        self.rule.q(beta.to_array(), albedo.to_array())
+    }
+}
+
+impl Rule {
+    /// Expected number of continuations, given throughput and albedo by channel: of one path, or of several side by side.
+    #[inline(always)]
+    pub fn q<N: Number>(self, beta: [N; 3], albedo: [N; 3]) -> N {
+        let largest = |[r, g, b]: [N; 3]| r.max(g.max(b));
+        match self {
+            Rule::None => beta[0].like(1.0),
+            Rule::Constant { q } => beta[0].like(q),
+            Rule::Albedo => largest(albedo),
+            Rule::Throughput { floor } => {
+                largest([beta[0] * albedo[0], beta[1] * albedo[1], beta[2] * albedo[2]]).clamp(floor, 1.0)
+            }
         }
+    }
+}
+
+/// A number of one path, or of several side by side.
+pub trait Number: Copy + std::ops::Mul<Output = Self> {
+    /// `x` for each path.
+    fn like(self, x: f64) -> Self;
+
+    /// The larger of two.
+    fn max(self, other: Self) -> Self;
+
+    /// The nearest number in [low, high].
+    fn clamp(self, low: f64, high: f64) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn like(self, x: f64) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        f64::max(self, other)
+    }
+
+    #[inline(always)]
+    fn clamp(self, low: f64, high: f64) -> Self {
+        f64::clamp(self, low, high)
     }
 }

@@ -5,6 +5,7 @@ use super::cell::{Block, Cell};
 use super::ledger::Stream;
 use super::plan::CellPlan;
 use crate::estimator::{Ctx, Estimate, Tally};
+use crate::fast::Fast;
 use crate::sampling::Address;
 use crate::scene::Scene;
 use rayon::prelude::*;
@@ -120,6 +121,38 @@ pub fn block_of(
         }
         block.realization(tally.rays - rays_before, &tally);
     }
+    block.close(tally);
+    block
+}
+
+/// The same block by the fast path; `draw` gives narrow streams.
+pub fn fast_block_of(
+    scene: &Scene,
+    fast: &Fast<'_>,
+    draw: &impl Fn(u64, u64) -> crate::sampling::Stream,
+    streams: &[Stream],
+    realizations: Range<u64>,
+) -> Block {
+    let (width, height) = scene.sensor.resolution();
+    let pixels = width * height;
+    let mut block = Block::new(width, height, streams);
+    let mut to_start = realizations.flat_map(|r| (0..pixels).map(move |pixel| (r, pixel)));
+    let mut next = || {
+        let (realization, pixel) = to_start.next()?;
+        let mut stream = draw(realization, u64::from(pixel));
+        let start = scene.start((pixel % width, pixel / width), &mut stream);
+        Some((start, stream))
+    };
+    let (mut pixel, mut rays_before) = (0, 0);
+    let mut tally = Tally::default();
+    fast.trace(&mut tally, &mut next, &mut |tally| {
+        block.pixel(pixel as usize, tally.value);
+        pixel += 1;
+        if pixel == pixels {
+            block.realization(tally.rays - rays_before, tally);
+            (pixel, rays_before) = (0, tally.rays);
+        }
+    });
     block.close(tally);
     block
 }

@@ -1,7 +1,8 @@
 //! Keyed random streams: a stream's address is its content, so a result does not depend on threads, order or neighbours.
 //!
 //! Generator: PCG64 MCG [O'Neill 2014]. Its states 2k and 2k+1 are one and the same generator, so small counters
-//! are never passed raw: a state is a 128-bit mix of (key, realization, pixel).
+//! are never passed raw: a state is a 128-bit mix of (key, realization, pixel). Narrow streams, which run side by side in
+//! the lanes of `fast`, come from xoshiro128++ [Blackman & Vigna 2021], whose state is that mix, too.
 
 use rand::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -38,10 +39,26 @@ impl Address {
     /// (realization, pixel) -> state is injective up to the lowest bit, which the generator ignores.
     #[inline]
     pub fn stream(&self, realization: u64, pixel: u64) -> Stream {
+        let (high, low) = self.state(realization, pixel);
+        Stream { generator: Generator::Wide(Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low))) }
+    }
+
+    /// The narrow stream of one pixel in one realization: multiples of 2^-24, which single precision holds.
+    ///
+    /// All bits of the state count. One state in 2^128, all zeros, would stay at zero.
+    #[inline]
+    pub fn narrow_stream(&self, realization: u64, pixel: u64) -> Stream {
+        let (high, low) = self.state(realization, pixel);
+        let halves = |word: u64| [word as u32, (word >> 32) as u32];
+        let ([a, b], [c, d]) = (halves(low), halves(high));
+        Stream { generator: Generator::Narrow([a, b, c, d]) }
+    }
+
+    #[inline]
+    fn state(&self, realization: u64, pixel: u64) -> (u64, u64) {
         let a = mix(self.key[0].wrapping_add(realization.wrapping_mul(GOLDEN)));
         let low = mix((self.key[1] ^ a).wrapping_add(pixel.wrapping_mul(GOLDEN)));
-        let high = mix(a ^ low);
-        Stream { rng: Pcg64Mcg::new((u128::from(high) << 64) | u128::from(low)) }
+        (mix(a ^ low), low)
     }
 }
 
@@ -59,15 +76,25 @@ fn mix(mut z: u64) -> u64 {
 /// A sequence of independent uniform numbers in [0, 1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stream {
-    rng: Pcg64Mcg,
+    generator: Generator,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Generator {
+    Wide(Pcg64Mcg),
+    Narrow([u32; 4]),
 }
 
 impl Stream {
-    /// A multiple of 2^-53 in [0, 1); 1 is never returned.
+    /// A multiple of 2^-53 in [0, 1), of a narrow stream one of 2^-24; 1 is never returned.
     #[inline]
     pub fn u1(&mut self) -> f64 {
-        const SCALE: f64 = 1.0 / (1u64 << 53) as f64;
-        (self.rng.next_u64() >> 11) as f64 * SCALE
+        const WIDE: f64 = 1.0 / (1u64 << 53) as f64;
+        const NARROW: f64 = 1.0 / (1u64 << 24) as f64;
+        match &mut self.generator {
+            Generator::Wide(rng) => (rng.next_u64() >> 11) as f64 * WIDE,
+            Generator::Narrow(state) => f64::from(next_narrow(state) >> 8) * NARROW,
+        }
     }
 
     /// A point of the unit square.
@@ -75,4 +102,27 @@ impl Stream {
     pub fn u2(&mut self) -> (f64, f64) {
         (self.u1(), self.u1())
     }
+
+    /// Where a narrow stream has got to; `None` for a wide one.
+    #[inline]
+    pub fn narrow_state(&self) -> Option<[u32; 4]> {
+        match self.generator {
+            Generator::Wide(_) => None,
+            Generator::Narrow(state) => Some(state),
+        }
+    }
+}
+
+/// xoshiro128++ [Blackman & Vigna 2021].
+#[inline]
+fn next_narrow([a, b, c, d]: &mut [u32; 4]) -> u32 {
+    let number = a.wrapping_add(*d).rotate_left(7).wrapping_add(*a);
+    let shifted = *b << 9;
+    *c ^= *a;
+    *d ^= *b;
+    *b ^= *c;
+    *a ^= *d;
+    *c ^= shifted;
+    *d = d.rotate_left(11);
+    number
 }

@@ -145,6 +145,14 @@ impl Lights {
         self.sky.as_ref()
     }
 
+    /// The surface that emits all light, if there is just one emitter.
+    pub fn only_surface(&self) -> Option<u32> {
+        match self.lights.as_slice() {
+            [Light { emitter: Emitter::Surface(id, _), .. }] => Some(*id),
+            _ => None,
+        }
+    }
+
     /// The lights without extent, but for those that are dark.
     pub fn points(&self) -> impl Iterator<Item = &PointLight> {
         self.lights.iter().filter_map(|l| match &l.emitter {

@@ -211,6 +211,11 @@ impl Scene {
         self.lights.points()
     }
 
+    /// The surface that emits all light, if there is just one emitter.
+    pub fn only_emitter(&self) -> Option<u32> {
+        self.lights.only_surface()
+    }
+
     /// The environment, if there is one.
     pub fn sky(&self) -> Option<&Sky> {
         self.lights.sky()
