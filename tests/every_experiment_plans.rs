@@ -76,8 +76,8 @@ fn scenes_written_out_in_the_file_run() {
         for estimator in ["implicit", "explicit"] {
             // scene, estimator, estimand; the mean follows four columns later
             let lit = |row: &csv::StringRecord| {
-                (&row[1], &row[2], &row[4]) == (name, estimator, "mean")
-                    && row[8].parse::<f64>().unwrap() > 0.0
+                (&row[1], &row[2], &row[5]) == (name, estimator, "mean")
+                    && row[9].parse::<f64>().unwrap() > 0.0
             };
             assert_eq!(
                 rows.iter().filter(|row| lit(row)).count(),

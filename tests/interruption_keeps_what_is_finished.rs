@@ -28,7 +28,7 @@ samples = 2_000_000_000
 /// What the first column of rows like `x,furnace,implicit,constant,0.5,...` is about.
 fn cells(csv: &Path) -> BTreeSet<String> {
     let mut reader = csv::Reader::from_path(csv).unwrap();
-    reader.records().map(|row| row.unwrap().iter().skip(1).take(4).collect::<Vec<_>>().join(" ")).collect()
+    reader.records().map(|row| row.unwrap().iter().skip(1).take(5).collect::<Vec<_>>().join(" ")).collect()
 }
 
 /// A folder with the experiment and an older, complete result of it.
@@ -72,8 +72,11 @@ fn keeps_what_is_finished(signal: &str) {
     assert!(stderr.contains(message), "{stderr}");
 
     let kept = place.join("reports/x-interrupted");
-    let finished =
-        ["furnace implicit constant 0.5", "furnace implicit constant 0.6", "furnace implicit albedo "];
+    let finished = [
+        "furnace implicit constant textbook 0.5",
+        "furnace implicit constant textbook 0.6",
+        "furnace implicit albedo textbook ",
+    ];
     assert_eq!(cells(&kept.join("results.csv")), finished.map(str::to_owned).into());
     let page = fs::read_to_string(kept.join("index.html")).unwrap();
     assert!(page.contains("Interrupted: 3 of 4 cells finished."));

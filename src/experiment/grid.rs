@@ -1,12 +1,14 @@
 //! Every combination of a file's scenes, estimators and termination rules, each refused where it cannot work.
 
 use super::choices::{self, Choice};
+use super::core::Core;
 use super::error::Error;
 use super::plan::{CellPlan, LeftOut};
 use super::reach;
 use super::runs;
 use super::spec::{Grid, Spec, Streams};
 use crate::estimator::{Estimator, Roulette, Rule};
+use crate::fast::Fast;
 use crate::faults::Fault;
 use crate::sampling::Address;
 use crate::scene::Scene;
@@ -86,6 +88,7 @@ fn grid_cells(
                     estimator_label: estimator.choice.label.clone(),
                     roulette_label: roulette.choice.label.clone(),
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
+                    core: core(spec.core, &built, &whole, fault),
                     samples: grid.samples.unwrap_or(spec.samples),
                     block: run.unwrap_or(0),
                     traced: run.is_some(),
@@ -106,6 +109,12 @@ fn grid_cells(
         }
     }
     Ok(())
+}
+
+/// The core that samples a cell: the textbook wherever there is no other.
+fn core(wanted: Core, scene: &Scene, estimator: &Estimator, fault: Option<&Fault>) -> Core {
+    let is_offered = fault.is_none() && Fast::of(scene, estimator).is_ok();
+    if is_offered { wanted } else { Core::Textbook }
 }
 
 /// The choices of one axis of the grid, their sweeps written out.

@@ -5,6 +5,7 @@ pub mod allot;
 mod block;
 pub mod cell;
 pub mod choices;
+pub mod core;
 pub mod error;
 mod grid;
 pub mod input;
@@ -29,6 +30,7 @@ mod tiles;
 pub mod verdict;
 
 pub use cell::Cell;
+pub use core::Core;
 pub use error::Error;
 
 pub use plan::{CellPlan, Overrides, Plan};

@@ -1,5 +1,6 @@
 //! The resolved experiment: every cell with its samples and what it will cost.
 
+use super::core::Core;
 use super::error::Error;
 use super::grid;
 use super::ledger::Stream;
@@ -32,6 +33,8 @@ pub struct CellPlan {
     pub roulette_label: String,
     /// Numeric parameters by name, swept or not.
     pub params: BTreeMap<String, f64>,
+    /// What follows its paths.
+    pub core: Core,
     /// Realizations.
     pub samples: u64,
     /// Realizations a block.
@@ -112,6 +115,8 @@ pub struct Overrides {
     pub filter: Option<String>,
     /// Only the cell with this label, as if the others were run beside it: the same samples, bit for bit.
     pub only: Option<String>,
+    /// Another core than the file's.
+    pub core: Option<Core>,
     /// A hundredth of the samples.
     pub quick: bool,
     /// Run cells that are out of proportion.
@@ -135,6 +140,7 @@ impl Plan {
     pub fn new(name: &str, file: &Path, source: &str, overrides: &Overrides) -> Result<Self, Error> {
         let mut spec = spec::parse(file, source)?;
         spec.seed = overrides.seed.unwrap_or(spec.seed);
+        spec.core = overrides.core.unwrap_or(spec.core);
         let grid::Resolved { cells, left_out, swept } = grid::resolve(&spec, file, source)?;
         let references = references::load(&spec, &cells, file, source)?;
         let mut plan = Plan { name: name.to_owned(), spec, cells, left_out, swept, references, whole: None };

@@ -2,10 +2,10 @@
 //! block order, serially, so that results have the same bits for any number of threads.
 
 use super::cell::{Block, Cell};
+use super::core::Sampler;
 use super::ledger::Stream;
 use super::plan::CellPlan;
 use crate::estimator::{Ctx, Estimate, Tally};
-use crate::fast::Fast;
 use crate::sampling::Address;
 use crate::scene::Scene;
 use rayon::prelude::*;
@@ -34,6 +34,7 @@ pub fn run_cell(
     is_decided: &dyn Fn(&mut Cell) -> bool,
 ) -> Option<Cell> {
     let scene = plan.scene.build();
+    let sampler = Sampler::new(plan, &scene);
     let blocks = plan.samples / plan.block;
     let wave = (WAVE_PATHS / (plan.block * plan.pixels)).max(8);
     let looks = LOOKS.map(|eighths| (blocks * eighths).div_ceil(8));
@@ -45,18 +46,7 @@ pub fn run_cell(
         }
         let look = looks.into_iter().find(|&look| look > first).unwrap_or(blocks);
         let last = (first + wave).min(look);
-        let run = |block: u64| {
-            let realizations = block * plan.block..(block + 1) * plan.block;
-            let draw = |number, pixel| plan.address.stream(number, pixel);
-            match plan.faulty() {
-                None => block_of(&scene, &plan.estimator, &draw, &plan.streams, realizations),
-                Some(faulty) => {
-                    let draw = |number, pixel| draw(faulty.realization(number), pixel);
-                    block_of(&scene, &faulty, &draw, &plan.streams, realizations)
-                }
-            }
-        };
-        let finished: Vec<Block> = (first..last).into_par_iter().map(run).collect();
+        let finished: Vec<Block> = (first..last).into_par_iter().map(|b| sampler.block(b)).collect();
         for block in &finished {
             cell.merge(block);
             if plan.traced {
@@ -121,38 +111,6 @@ pub fn block_of(
         }
         block.realization(tally.rays - rays_before, &tally);
     }
-    block.close(tally);
-    block
-}
-
-/// The same block by the fast path; `draw` gives narrow streams.
-pub fn fast_block_of(
-    scene: &Scene,
-    fast: &Fast<'_>,
-    draw: &impl Fn(u64, u64) -> crate::sampling::Stream,
-    streams: &[Stream],
-    realizations: Range<u64>,
-) -> Block {
-    let (width, height) = scene.sensor.resolution();
-    let pixels = width * height;
-    let mut block = Block::new(width, height, streams);
-    let mut to_start = realizations.flat_map(|r| (0..pixels).map(move |pixel| (r, pixel)));
-    let mut next = || {
-        let (realization, pixel) = to_start.next()?;
-        let mut stream = draw(realization, u64::from(pixel));
-        let start = scene.start((pixel % width, pixel / width), &mut stream);
-        Some((start, stream))
-    };
-    let (mut pixel, mut rays_before) = (0, 0);
-    let mut tally = Tally::default();
-    fast.trace(&mut tally, &mut next, &mut |tally| {
-        block.pixel(pixel as usize, tally.value);
-        pixel += 1;
-        if pixel == pixels {
-            block.realization(tally.rays - rays_before, tally);
-            (pixel, rays_before) = (0, tally.rays);
-        }
-    });
     block.close(tally);
     block
 }

@@ -2,6 +2,7 @@
 //! first sample.
 
 use super::cell::TILES;
+use super::core::Core;
 use super::ledger::Stream;
 use super::plan::{CellPlan, Plan};
 use super::spec::Claim;
@@ -46,7 +47,12 @@ fn stake(plan: &Plan, cell: &CellPlan, truth: &Truth, channel: usize, counted: C
     let is_path = cell.fault.is_none_or(|fault| !matches!(fault.slip, Slip::Density(_)));
     // without a closed form nobody knows the variance, and so whether a bound would ask for too many samples
     let is_planned = is_path && truth.theory().is_some();
-    let bound = bound::of(&cell.scene, &cell.estimator, channel, counted).filter(|_| is_planned);
+    // cosines along a short way to a light have no digits in single precision, and so their product no bound
+    let is_bounded = cell.core == Core::Textbook || !cell.estimator.samples_lights();
+    let bound =
+        bound::of(&cell.scene, &cell.estimator, channel, counted).filter(|_| is_planned && is_bounded);
+    // a path of 500 bounces rounds as often a few times
+    let bound = bound.map(|bound| bound * (1.0 + 10.0 * cell.core.rounding()));
     let stake = Stake { scale: expected.value, bound: bound.filter(|bound| *bound > expected.value) };
     let [above, below] = is_worth_it(plan, cell, truth, channel, &stake);
     // the bound of a bounce is worth what it is: whether its samples suffice is foreseen

@@ -1,6 +1,7 @@
 //! Where results are kept: written beside the old ones and put in their place only when complete.
 
 use super::cell::Cell;
+use super::core::Core;
 use super::error::Error;
 use super::plan::Plan;
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,9 @@ pub struct Stored {
     pub labels: Vec<String>,
     /// Realizations of each cell.
     pub samples: Vec<u64>,
+    /// What followed the paths of each cell; the textbook, where nothing is said.
+    #[serde(default)]
+    pub cores: Vec<Core>,
     /// The cells; `None` where the run was interrupted.
     pub cells: Vec<Option<Cell>>,
     /// Wall-clock seconds of each cell.
@@ -117,6 +121,9 @@ pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
         cell.samples = samples;
         let block = kept.as_ref().and_then(|kept| kept.cost.n.checked_div(kept.blocks[0].n));
         cell.block = block.unwrap_or(cell.block);
+    }
+    for (i, cell) in plan.cells.iter_mut().enumerate() {
+        cell.core = stored.cores.get(i).copied().unwrap_or_default();
     }
     Ok(stored)
 }

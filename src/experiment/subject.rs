@@ -139,7 +139,7 @@ impl Subject<'_> {
             expected: expected.value,
             expected_std_error: expected.std_error,
             expected_df: expected.df,
-            systematic: expected.bound,
+            systematic: expected.bound + self.plan.core.rounding() * expected.value.abs(),
             noise_free: variance == Known::Value(0.0),
             margin,
             bets: bets.cloned(),

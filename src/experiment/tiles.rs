@@ -52,7 +52,7 @@ impl Subject<'_> {
                     std_error: measured.std_error,
                     expected_std_error: right.std_error,
                     expected_df: right.df,
-                    systematic: right.bound,
+                    systematic: right.bound + self.plan.core.rounding() * right.value.abs(),
                     ..Question::about(&self.cell.total[channel], self.cell.invalid(), right.value, margin)
                 };
                 sheet.ask(claim, question);

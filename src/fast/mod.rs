@@ -30,6 +30,13 @@ use stage::Stage;
 use vector::lanes;
 use walk::Walk;
 
+/// The instruction set of this machine that the fast path uses.
+pub fn instruction_set() -> String {
+    // `Avx2(Avx2 { .. })`
+    let level = format!("{:?}", Level::new());
+    level.split('(').next().unwrap_or_default().to_lowercase()
+}
+
 /// A path tracer that follows sixteen paths at once.
 pub struct Fast<'a> {
     walk: Walk<'a>,

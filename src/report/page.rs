@@ -12,7 +12,7 @@ use super::difference::FULL;
 use super::figure;
 use super::lookup::Lookup;
 use super::summary::{self, Line};
-use crate::experiment::{Cell, Plan};
+use crate::experiment::{Cell, Core, Plan};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -130,7 +130,8 @@ fn provenance(lookup: &Lookup<'_>) -> Markup {
     let plan = lookup.plan;
     html! {
         @for r in &plan.references { p { "Reference of " (r.scene) ": " code { (r.file) } "." } }
-        pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) (samples(lookup)) }
+        @if let Some(cores) = cores(plan) { p { (cores) } }
+        pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) (samples(lookup)) (core(plan)) }
         p {
             "furnace " (env!("CARGO_PKG_VERSION")) ", seed " (plan.spec.seed) ". The same bytes for any number of threads. "
             a href="results.csv" { "results.csv" } ", "
@@ -138,6 +139,22 @@ fn provenance(lookup: &Lookup<'_>) -> Markup {
             a href="run.json" { "run.json" } "."
         }
     }
+}
+
+/// The option that makes the fast path sample; that of the file may be another.
+fn core(plan: &Plan) -> &'static str {
+    let is_fast = plan.cells.iter().any(|cell| cell.core == Core::Fast);
+    if is_fast { " --core fast" } else { "" }
+}
+
+/// Which cells the fast path has sampled, if any.
+fn cores(plan: &Plan) -> Option<String> {
+    let fast = plan.cells.iter().filter(|cell| cell.core == Core::Fast).count();
+    let all = plan.cells.len();
+    let which = if fast == all { "All cells were".to_owned() } else { format!("{fast} of {all} cells were") };
+    let how = "sampled by the fast path: single precision, sixteen paths side by side";
+    let rest = if fast == all { "." } else { "; the others by the textbook, in double precision." };
+    (fast > 0).then(|| format!("{which} {how}{rest}"))
 }
 
 /// The option that gives all cells the samples that they have, where the file would not.

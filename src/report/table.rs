@@ -3,13 +3,14 @@
 
 use crate::estimator::BINS;
 use crate::experiment::row::CHANNELS;
-use crate::experiment::{Cell, Estimand, Plan, Row};
+use crate::experiment::{Cell, CellPlan, Core, Estimand, Plan, Row};
+use crate::fast;
 use crate::stats::tails::Light;
 
 /// The text of `results.csv`.
 pub fn results(plan: &Plan, cells: &[Option<Cell>], rows: &[Row]) -> Vec<u8> {
     let mut csv = csv::Writer::from_writer(Vec::new());
-    let fixed = ["experiment", "scene", "estimator", "roulette"];
+    let fixed = ["experiment", "scene", "estimator", "roulette", "core"];
     let measured = [
         "estimand",
         "bounce",
@@ -55,6 +56,7 @@ fn record(plan: &Plan, measured: Option<&Cell>, row: &Row) -> Vec<String> {
         cell.scene_label.clone(),
         cell.estimator_label.clone(),
         cell.roulette_label.clone(),
+        cell.core.to_string(),
     ];
     record.extend(plan.swept.iter().map(|name| number(cell.params.get(name).copied())));
     record.extend([
@@ -111,10 +113,18 @@ pub(super) fn derived(value: Option<f64>) -> String {
     value.map_or_else(String::new, |v| format!("{v:.8e}"))
 }
 
+/// The core, and of the fast one the instruction set that it found here.
+fn core(cell: &CellPlan) -> String {
+    match cell.core {
+        Core::Textbook => cell.core.to_string(),
+        Core::Fast => format!("{} {}", cell.core, fast::instruction_set()),
+    }
+}
+
 /// The text of `timing.csv`.
 pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64]) -> Vec<u8> {
     let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(["experiment", "cell", "realizations", "rays", "seconds", "rays_per_second"])
+    csv.write_record(["experiment", "cell", "core", "realizations", "rays", "seconds", "rays_per_second"])
         .expect("a Vec takes all");
     for ((cell_plan, cell), seconds) in plan.cells.iter().zip(cells).zip(seconds) {
         let Some(cell) = cell else { continue };
@@ -122,6 +132,7 @@ pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64]) -> Vec<u8> {
         let record = [
             plan.name.clone(),
             plan.label(cell_plan),
+            core(cell_plan),
             cell.cost.n.to_string(),
             format!("{rays:.0}"),
             format!("{seconds:.4}"),

@@ -26,15 +26,17 @@ pub(super) struct Evidence {
 /// Applies the rules for missing noise, or else the tests at `level`.
 pub(super) fn weigh(q: &Question, level: f64) -> Evidence {
     let rounding = ROUNDING * q.expected.abs().max(f64::MIN_POSITIVE);
+    // what may be off by a systematic error, as by single precision, may vary within it
+    let is_still = q.std_error <= rounding.max(q.systematic);
     let sides = Sides::of(q);
-    if q.noise_free && q.std_error <= rounding && q.expected_std_error == 0.0 {
+    if q.noise_free && is_still && q.expected_std_error == 0.0 {
         return compare_exactly(q, rounding);
     }
     if let Some(why) = why_no_t(q).filter(|_| sides.are_blind()) {
         return nothing(&why);
     }
     let mut evidence = test(q, &sides, level);
-    if q.noise_free && q.std_error > rounding {
+    if q.noise_free && !is_still {
         let se = q.std_error;
         let reason = format!("noise-free in theory, but it varies: standard error {se:.3e}");
         evidence.settled = Some((Verdict::Fail, reason));
@@ -208,6 +210,9 @@ mod tests {
         assert_eq!(verdict(10.0 + 3e-4, 10.0, 0.0, 4e-4), Verdict::Pass);
         assert_eq!(verdict(10.0 + 8e-4, 10.0, 0.0, 9e-4), Verdict::Inconclusive);
         assert_eq!(verdict(10.0 + 8e-4, 10.0, 0.0, 1e-4), Verdict::Fail);
+        // a systematic error may vary
+        assert_eq!(verdict(10.0, 10.0, 1e-5, 1e-5), Verdict::Pass);
+        assert_eq!(verdict(10.0, 10.0, 2e-5, 1e-5), Verdict::Fail);
         let (_, reason) = settled(&Question { std_error: 0.25, ..exact.clone() });
         assert!(reason.contains("noise-free in theory, but it varies"));
         // against a noisy reference it is a test like any other

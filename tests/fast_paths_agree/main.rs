@@ -9,7 +9,8 @@ mod common;
 
 use common::{Told, fast, rules, scenes, textbook};
 use furnace::estimator::{Estimator, LightTracing, Roulette, Rule};
-use furnace::experiment::run::{block_of, fast_block_of};
+use furnace::experiment::core::fast_block_of;
+use furnace::experiment::run::block_of;
 use furnace::fast::{Fast, Level};
 use furnace::sampling::Address;
 use furnace::scene::Directions;

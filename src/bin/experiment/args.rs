@@ -142,6 +142,10 @@ pub struct Options {
     #[arg(short, long, value_name = "N", default_value_t = 0, global = true,
         value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub jobs: u16,
+    /// What follows paths: the textbook, one path at a time in double precision, or, where it is offered, the fast path,
+    /// sixteen at once in single precision; instead of what the file says
+    #[arg(long, value_enum, global = true)]
+    pub core: Option<CoreName>,
     /// A hundredth of the samples: shows that all works, decides little
     #[arg(long, global = true)]
     pub quick: bool,
@@ -184,4 +188,21 @@ pub enum Format {
     Json,
     /// A scene file for Mitsuba 3, which is what `export` writes
     Mitsuba,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CoreName {
+    /// One path at a time in double precision
+    Textbook,
+    /// Sixteen paths at once in single precision
+    Fast,
+}
+
+impl From<CoreName> for furnace::experiment::Core {
+    fn from(name: CoreName) -> Self {
+        match name {
+            CoreName::Textbook => Self::Textbook,
+            CoreName::Fast => Self::Fast,
+        }
+    }
 }

@@ -3,7 +3,8 @@
 use crate::args::{Options, Render};
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, subject};
-use furnace::experiment::{CellPlan, Error, run_cell};
+use furnace::experiment::{CellPlan, Core, Error, run_cell};
+use furnace::fast::Fast;
 use furnace::report::images;
 use furnace::sampling::Address;
 use furnace::truth::Truth;
@@ -18,6 +19,8 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
     if width * height == 1 {
         return Err(Error::Refused(format!("{} has no camera, so there is no image to render", args.scene)));
     }
+    let wanted = options.core.map_or(Core::Textbook, Core::from);
+    let core = if Fast::of(&scene.build(), &estimator).is_ok() { wanted } else { Core::Textbook };
     let plan = CellPlan {
         address: Address::of(&[
             "render",
@@ -28,6 +31,7 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         scene_label: args.scene.clone(),
         estimator_label: args.estimator.clone(),
         roulette_label: "throughput".to_owned(),
+        core,
         params: Default::default(),
         samples: args.spp.div_ceil(2) * 2,
         block: 2,

@@ -65,6 +65,7 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
         spec: source.text.clone(),
         seed: plan.spec.seed,
         samples: plan.cells.iter().map(|cell| cell.samples).collect(),
+        cores: plan.cells.iter().map(|cell| cell.core).collect(),
         labels: plan.cells.iter().map(|cell| plan.label(cell)).collect(),
         cells,
         seconds,

@@ -16,6 +16,7 @@ pub use primitives::{BsdfSpec, PointSpec, PrimitiveSpec, PrimitivesSpec, SensorS
 pub use scene::{FlushSpec, FurnaceSpec, LooksAt, SceneSpec, SphereSpec};
 pub use walk::{EstimatorSpec, FaultNames, RouletteSpec, TechniqueSpec};
 
+use super::core::Core;
 use super::error::Error;
 use super::input::{self, Named, Tables};
 use serde::Deserialize;
@@ -44,6 +45,9 @@ pub struct Spec {
     /// Whether cells share their random numbers.
     #[serde(default)]
     pub streams: Streams,
+    /// What follows paths.
+    #[serde(default)]
+    pub core: Core,
     /// Realizations a cell: paths for a probe, image passes (samples a pixel) for a camera.
     #[serde(deserialize_with = "input::samples")]
     pub samples: u64,

@@ -1,0 +1,111 @@
+//! Which of two cores samples a cell: the textbook, one path at a time in double precision, or the fast path.
+
+use super::block::Block;
+use super::ledger::Stream;
+use super::plan::CellPlan;
+use super::run::block_of;
+use crate::estimator::Tally;
+use crate::fast::Fast;
+use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::Range;
+
+/// What follows the paths of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Core {
+    /// The estimator itself, in double precision.
+    #[default]
+    Textbook,
+    /// Sixteen paths side by side in single precision, where that is offered; the estimator itself elsewhere.
+    Fast,
+}
+
+impl Core {
+    /// Bound on the relative error that rounding leaves in a mean, beyond that of double precision, which verdicts neglect:
+    /// `cargo bench --bench rounding` measures less in every scene.
+    pub fn rounding(self) -> f64 {
+        match self {
+            Core::Textbook => 0.0,
+            Core::Fast => 1e-5,
+        }
+    }
+}
+
+impl fmt::Display for Core {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Core::Textbook => "textbook",
+            Core::Fast => "fast",
+        })
+    }
+}
+
+/// What samples the blocks of a cell.
+pub(super) struct Sampler<'a> {
+    plan: &'a CellPlan,
+    scene: &'a Scene,
+    fast: Option<Fast<'a>>,
+}
+
+impl<'a> Sampler<'a> {
+    /// The core that the plan names.
+    pub fn new(plan: &'a CellPlan, scene: &'a Scene) -> Self {
+        let fast = match plan.core {
+            Core::Fast => Some(Fast::of(scene, &plan.estimator).expect("planned only where it is offered")),
+            Core::Textbook => None,
+        };
+        Sampler { plan, scene, fast }
+    }
+
+    /// One block of the cell.
+    pub fn block(&self, number: u64) -> Block {
+        let Sampler { plan, scene, .. } = *self;
+        let realizations = number * plan.block..(number + 1) * plan.block;
+        let draw = |number, pixel| plan.address.stream(number, pixel);
+        match (plan.faulty(), &self.fast) {
+            (None, None) => block_of(scene, &plan.estimator, &draw, &plan.streams, realizations),
+            (None, Some(fast)) => {
+                let draw = |number, pixel| plan.address.narrow_stream(number, pixel);
+                fast_block_of(scene, fast, &draw, &plan.streams, realizations)
+            }
+            (Some(faulty), _) => {
+                let draw = |number, pixel| draw(faulty.realization(number), pixel);
+                block_of(scene, &faulty, &draw, &plan.streams, realizations)
+            }
+        }
+    }
+}
+
+/// What [`block_of`] does, by the fast path; `draw` gives narrow streams.
+pub fn fast_block_of(
+    scene: &Scene,
+    fast: &Fast<'_>,
+    draw: &impl Fn(u64, u64) -> crate::sampling::Stream,
+    streams: &[Stream],
+    realizations: Range<u64>,
+) -> Block {
+    let (width, height) = scene.sensor.resolution();
+    let pixels = width * height;
+    let mut block = Block::new(width, height, streams);
+    let mut to_start = realizations.flat_map(|r| (0..pixels).map(move |pixel| (r, pixel)));
+    let mut next = || {
+        let (realization, pixel) = to_start.next()?;
+        let mut stream = draw(realization, u64::from(pixel));
+        let start = scene.start((pixel % width, pixel / width), &mut stream);
+        Some((start, stream))
+    };
+    let (mut pixel, mut rays_before) = (0, 0);
+    let mut tally = Tally::default();
+    fast.trace(&mut tally, &mut next, &mut |tally| {
+        block.pixel(pixel as usize, tally.value);
+        pixel += 1;
+        if pixel == pixels {
+            block.realization(tally.rays - rays_before, tally);
+            (pixel, rays_before) = (0, tally.rays);
+        }
+    });
+    block.close(tally);
+    block
+}
