@@ -7,7 +7,7 @@ use multiversion::multiversion;
 
 const WIDTH: usize = 8;
 /// Groups whose distances are held at once.
-const CHUNK: usize = 8;
+const CHUNK: usize = 4;
 type Lane = [f64; WIDTH];
 
 /// Eight rectangles as plane equations. Unused lanes hold a rectangle that nothing hits.
@@ -92,10 +92,11 @@ fn nearest(groups: &[Group], ray: &Ray, own: f64) -> (f64, u32) {
                 best[k] = if t[k] < best[k] { t[k] } else { best[k] };
             }
         }
-        let lane = least(&best);
-        if best[lane] < nearest.0 {
-            let group = (0..chunk.len()).find(|&g| t[g][lane] == best[lane]).unwrap_or(0);
-            nearest = (best[lane], chunk[group].id[lane]);
+        let (least, lane) = least(&best);
+        if least < nearest.0 {
+            let first = |found, g: usize| if t[g][lane] == least { g } else { found };
+            let group = (0..chunk.len()).rev().fold(0, first);
+            nearest = (least, chunk[group].id[lane]);
         }
     }
     nearest
@@ -103,9 +104,14 @@ fn nearest(groups: &[Group], ray: &Ray, own: f64) -> (f64, u32) {
 
 /// The lane of the smallest value. A call of its own, or the compiler takes the loop before it to pieces.
 #[inline(never)]
-fn least(t: &Lane) -> usize {
-    let closer = |a: usize, b: usize| if t[b] < t[a] { b } else { a };
-    closer(closer(closer(0, 1), closer(2, 3)), closer(closer(4, 5), closer(6, 7)))
+fn least(t: &Lane) -> (f64, usize) {
+    let lane = |k: usize| (t[k], k);
+    let closer = |a: (f64, usize), b: (f64, usize)| {
+        let near = b.0 < a.0;
+        (if near { b.0 } else { a.0 }, if near { b.1 } else { a.1 })
+    };
+    let half = |k: usize| closer(closer(lane(k), lane(k + 1)), closer(lane(k + 2), lane(k + 3)));
+    closer(half(0), half(4))
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
