@@ -105,7 +105,7 @@ impl<'a> Ctx<'a> {
     }
 
     /// Traces a ray: what it meets first, or `None` for the void and for black backs.
-    #[inline]
+    #[inline(always)]
     pub fn hit(&mut self, ray: &Ray) -> Option<Hit<'a>> {
         self.tally.rays += 1;
         if self.tally.rays > self.limit {
@@ -169,7 +169,7 @@ impl<'a> Ctx<'a> {
     }
 
     /// A continued direction at `x`.
-    #[inline]
+    #[inline(always)]
     pub fn scatter(&mut self, x: &Hit<'_>, directions: Directions) -> Step {
         let s = x.material.bsdf.sample(Carried::Radiance, directions, &x.frame, x.wo, self.u2());
         Step { ray: x.spawn(s.wi), weight: s.weight, pdf: s.pdf }

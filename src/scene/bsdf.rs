@@ -155,7 +155,7 @@ impl Bsdf {
 
     /// Draws a direction around the normal of `frame`; `wo` is where the path came from. A facet of a glossy surface may
     /// mirror to below the surface, where the weight is zero.
-    #[inline]
+    #[inline(always)]
     pub fn sample(
         &self,
         carried: Carried,
@@ -168,13 +168,13 @@ impl Bsdf {
             Bsdf::Lambert { albedo } => lambert(directions, albedo, frame, u),
             Bsdf::Mirror { reflectance } => dirac(mirrored(wo, frame.n), reflectance),
             Bsdf::Conductor { .. } => dirac(mirrored(wo, frame.n), self.albedo(frame.n.dot(wo))),
-            Bsdf::Glossy { alpha, eta, k } => glossy(alpha, (eta, k), frame, wo, u),
+            Bsdf::Glossy { alpha, eta, k } => glossy(alpha, (eta, k), *frame, wo, u),
             Bsdf::Dielectric { ior } => dielectric(carried, ior, frame.n, wo, u.0),
         }
     }
 }
 
-#[inline]
+#[inline(always)]
 fn lambert(directions: Directions, albedo: Rgb, frame: &Frame, u: (f64, f64)) -> DirectionSample {
     match directions {
         Directions::Cosine => {
@@ -193,9 +193,9 @@ fn lambert(directions: Directions, albedo: Rgb, frame: &Frame, u: (f64, f64)) ->
 /// Mirrored at a facet as it is seen from `wo`: of f cos / pdf only the reflectance of the facet and the share of the
 /// facets seen from `wi` is left.
 #[inline]
-fn glossy(alpha: f64, (eta, k): (Rgb, Rgb), frame: &Frame, wo: DVec3, u: (f64, f64)) -> DirectionSample {
+fn glossy(alpha: f64, (eta, k): (Rgb, Rgb), frame: Frame, wo: DVec3, u: (f64, f64)) -> DirectionSample {
     let n = frame.n;
-    let m = microfacet::visible_normal(alpha, frame, wo, u);
+    let m = microfacet::visible_normal(alpha, &frame, wo, u);
     let wi = mirrored(wo, m);
     let pdf = Some(microfacet::reflected_pdf(alpha, n, m, n.dot(wo)));
     let cos_i = n.dot(wi);

@@ -136,7 +136,7 @@ impl Scene {
     }
 
     /// What the ray meets first at `time`: `None` for the void around an open scene and for a back, which is black.
-    #[inline]
+    #[inline(always)]
     pub fn intersect(&self, ray: &Ray, time: f64) -> Option<Hit<'_>> {
         let (mut t, mut id) = self.rectangles.nearest(ray);
         let (t_sphere, sphere) = self.spheres.nearest(ray);
