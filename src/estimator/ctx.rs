@@ -145,7 +145,7 @@ impl<'a> Ctx<'a> {
     }
 
     /// Next-event estimation: one sampled point on an emitter [Veach 1997, eq. 8.2], `None` where nothing arrives.
-    #[inline]
+    #[inline(always)]
     pub fn direct(&mut self, x: &Hit<'_>, lights: LightSampling) -> Option<Direct> {
         if x.material.bsdf.is_dirac() || x.is_sky() {
             return None;

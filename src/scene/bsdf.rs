@@ -111,7 +111,7 @@ impl Bsdf {
     /// it is what the polished one reflects, a number for roulette: what the rough one reflects has no closed form and is
     /// less, for light is lost between the facets, at grazing angles most of it. It is more only by 5 parts in 10^4, where
     /// facets that face elsewhere reflect better (by some per cent in matter that hardly reflects at all, k = 0).
-    #[inline]
+    #[inline(always)]
     pub fn albedo(&self, cos: f64) -> Rgb {
         match *self {
             Bsdf::Lambert { albedo } => albedo,
@@ -123,7 +123,7 @@ impl Bsdf {
 
     /// The BSDF f [1/sr] between two unit directions on a surface of normal `n`, without the cosine; zero where only
     /// Dirac lobes scatter, and where one of the directions does not leave the front.
-    #[inline]
+    #[inline(always)]
     pub fn f(&self, n: DVec3, wo: DVec3, wi: DVec3) -> Rgb {
         match *self {
             Bsdf::Lambert { albedo } if n.dot(wo) > 0.0 && n.dot(wi) > 0.0 => albedo * FRAC_1_PI,

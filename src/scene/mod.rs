@@ -230,6 +230,7 @@ impl Scene {
     }
 }
 
+#[inline(always)]
 fn sky_hit<'a>(sky: &Sky, ray: &Ray) -> Hit<'a> {
     let (p, frame) = (ray.o + ray.d * sky::FAR, Frame::around(-ray.d));
     Hit { p, frame, wo: -ray.d, material: &BLACK, le: sky.radiance(ray.d), surface: SKY }
