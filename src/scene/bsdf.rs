@@ -168,6 +168,7 @@ impl Bsdf {
             Bsdf::Lambert { albedo } => lambert(directions, albedo, frame, u),
             Bsdf::Mirror { reflectance } => dirac(mirrored(wo, frame.n), reflectance),
             Bsdf::Conductor { .. } => dirac(mirrored(wo, frame.n), self.albedo(frame.n.dot(wo))),
+            // by value: an address would keep the hit of every material in memory
             Bsdf::Glossy { alpha, eta, k } => glossy(alpha, (eta, k), *frame, wo, u),
             Bsdf::Dielectric { ior } => dielectric(carried, ior, frame.n, wo, u.0),
         }
