@@ -44,7 +44,9 @@ pub fn run_cell(
         if stop.load(Ordering::Relaxed) {
             return None;
         }
-        let look = looks.into_iter().find(|&look| look > first).unwrap_or(blocks);
+        // who may not stop has no use for a look: few large blocks run beside each other
+        let next = looks.into_iter().find(|&look| plan.may_stop && look > first);
+        let look = next.unwrap_or(blocks);
         let last = (first + wave).min(look);
         let finished: Vec<Block> = (first..last).into_par_iter().map(|b| sampler.block(b)).collect();
         for block in &finished {

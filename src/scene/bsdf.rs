@@ -111,7 +111,7 @@ impl Bsdf {
     /// it is what the polished one reflects, a number for roulette: what the rough one reflects has no closed form and is
     /// less, for light is lost between the facets, at grazing angles most of it. It is more only by 5 parts in 10^4, where
     /// facets that face elsewhere reflect better (by some per cent in matter that hardly reflects at all, k = 0).
-    #[inline]
+    #[inline(always)]
     pub fn albedo(&self, cos: f64) -> Rgb {
         match *self {
             Bsdf::Lambert { albedo } => albedo,
@@ -123,7 +123,7 @@ impl Bsdf {
 
     /// The BSDF f [1/sr] between two unit directions on a surface of normal `n`, without the cosine; zero where only
     /// Dirac lobes scatter, and where one of the directions does not leave the front.
-    #[inline]
+    #[inline(always)]
     pub fn f(&self, n: DVec3, wo: DVec3, wi: DVec3) -> Rgb {
         match *self {
             Bsdf::Lambert { albedo } if n.dot(wo) > 0.0 && n.dot(wi) > 0.0 => albedo * FRAC_1_PI,
@@ -155,7 +155,7 @@ impl Bsdf {
 
     /// Draws a direction around the normal of `frame`; `wo` is where the path came from. A facet of a glossy surface may
     /// mirror to below the surface, where the weight is zero.
-    #[inline]
+    #[inline(always)]
     pub fn sample(
         &self,
         carried: Carried,
@@ -168,13 +168,14 @@ impl Bsdf {
             Bsdf::Lambert { albedo } => lambert(directions, albedo, frame, u),
             Bsdf::Mirror { reflectance } => dirac(mirrored(wo, frame.n), reflectance),
             Bsdf::Conductor { .. } => dirac(mirrored(wo, frame.n), self.albedo(frame.n.dot(wo))),
-            Bsdf::Glossy { alpha, eta, k } => glossy(alpha, (eta, k), frame, wo, u),
+            // by value: an address would keep the hit of every material in memory
+            Bsdf::Glossy { alpha, eta, k } => glossy(alpha, (eta, k), *frame, wo, u),
             Bsdf::Dielectric { ior } => dielectric(carried, ior, frame.n, wo, u.0),
         }
     }
 }
 
-#[inline]
+#[inline(always)]
 fn lambert(directions: Directions, albedo: Rgb, frame: &Frame, u: (f64, f64)) -> DirectionSample {
     match directions {
         Directions::Cosine => {
@@ -193,9 +194,9 @@ fn lambert(directions: Directions, albedo: Rgb, frame: &Frame, u: (f64, f64)) ->
 /// Mirrored at a facet as it is seen from `wo`: of f cos / pdf only the reflectance of the facet and the share of the
 /// facets seen from `wi` is left.
 #[inline]
-fn glossy(alpha: f64, (eta, k): (Rgb, Rgb), frame: &Frame, wo: DVec3, u: (f64, f64)) -> DirectionSample {
+fn glossy(alpha: f64, (eta, k): (Rgb, Rgb), frame: Frame, wo: DVec3, u: (f64, f64)) -> DirectionSample {
     let n = frame.n;
-    let m = microfacet::visible_normal(alpha, frame, wo, u);
+    let m = microfacet::visible_normal(alpha, &frame, wo, u);
     let wi = mirrored(wo, m);
     let pdf = Some(microfacet::reflected_pdf(alpha, n, m, n.dot(wo)));
     let cos_i = n.dot(wi);

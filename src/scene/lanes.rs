@@ -7,7 +7,7 @@ use multiversion::multiversion;
 
 const WIDTH: usize = 8;
 /// Groups whose distances are held at once.
-const CHUNK: usize = 8;
+const CHUNK: usize = 4;
 type Lane = [f64; WIDTH];
 
 /// Eight rectangles as plane equations. Unused lanes hold a rectangle that nothing hits.
@@ -61,10 +61,10 @@ impl RectangleLanes {
     /// Distance and number of the nearest rectangle; infinity if there is none.
     #[inline]
     pub fn nearest(&self, ray: &Ray) -> (f64, u32) {
-        if self.groups.is_empty() {
-            return (f64::INFINITY, 0);
-        }
-        nearest(&self.groups, ray, self.slot_of(ray.from))
+        let own = self.slot_of(ray.from);
+        let closer = |a: (f64, u32), b: (f64, u32)| if b.0 < a.0 { b } else { a };
+        let nearest = self.groups.chunks(CHUNK).map(|chunk| nearest(chunk, ray, own));
+        nearest.fold((f64::INFINITY, 0), closer)
     }
 
     /// Whether a rectangle other than those of `ray.from` and `to` crosses the open segment.
@@ -82,30 +82,30 @@ impl RectangleLanes {
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn nearest(groups: &[Group], ray: &Ray, own: f64) -> (f64, u32) {
-    let mut nearest = (f64::INFINITY, 0);
-    for chunk in groups.chunks(CHUNK) {
-        let mut t = [[f64::INFINITY; WIDTH]; CHUNK];
-        let mut best = [f64::INFINITY; WIDTH];
-        for (t, group) in t.iter_mut().zip(chunk) {
-            *t = group.distances(ray, own, -1.0);
-            for k in 0..WIDTH {
-                best[k] = if t[k] < best[k] { t[k] } else { best[k] };
-            }
-        }
-        let lane = least(&best);
-        if best[lane] < nearest.0 {
-            let group = (0..chunk.len()).find(|&g| t[g][lane] == best[lane]).unwrap_or(0);
-            nearest = (best[lane], chunk[group].id[lane]);
+    let mut t = [[f64::INFINITY; WIDTH]; CHUNK];
+    let mut best = [f64::INFINITY; WIDTH];
+    for (t, group) in t.iter_mut().zip(groups) {
+        *t = group.distances(ray, own, -1.0);
+        for k in 0..WIDTH {
+            best[k] = if t[k] < best[k] { t[k] } else { best[k] };
         }
     }
-    nearest
+    let (least, lane) = least(&best);
+    let first = |found, g: usize| if t[g][lane] == least { g } else { found };
+    let group = (0..groups.len().min(CHUNK)).rev().fold(0, first);
+    (least, groups[group].id[lane])
 }
 
 /// The lane of the smallest value. A call of its own, or the compiler takes the loop before it to pieces.
 #[inline(never)]
-fn least(t: &Lane) -> usize {
-    let closer = |a: usize, b: usize| if t[b] < t[a] { b } else { a };
-    closer(closer(closer(0, 1), closer(2, 3)), closer(closer(4, 5), closer(6, 7)))
+fn least(t: &Lane) -> (f64, usize) {
+    let lane = |k: usize| (t[k], k);
+    let closer = |a: (f64, usize), b: (f64, usize)| {
+        let near = b.0 < a.0;
+        (if near { b.0 } else { a.0 }, if near { b.1 } else { a.1 })
+    };
+    let half = |k: usize| closer(closer(lane(k), lane(k + 1)), closer(lane(k + 2), lane(k + 3)));
+    closer(half(0), half(4))
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]

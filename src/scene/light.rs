@@ -4,7 +4,6 @@ pub mod emission;
 
 use super::sky::{FAR, SKY, Sky};
 use super::{Hit, Ray, Rgb, Shape, Surface, geometry::NOWHERE, solid_angle};
-use crate::sampling::warp::Frame;
 use crate::sampling::{PdfA, PdfW};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -260,8 +259,8 @@ impl Lights {
     }
 }
 
-/// A point, the frame of the front's normal there, and the solid angle [sr] if the point is uniform over it.
-type Point = (DVec3, Frame, Option<f64>);
+/// A point, the front's normal there, and the solid angle [sr] if the point is uniform over it.
+type Point = (DVec3, DVec3, Option<f64>);
 
 #[inline]
 fn of_surface(
@@ -273,14 +272,14 @@ fn of_surface(
     (p, time): (DVec3, f64),
     v: (f64, f64),
 ) -> Option<LightSample> {
-    let (point, frame, solid_angle) = match points {
+    let (point, n, solid_angle) = match points {
         Points::SolidAngle => by_solid_angle(surface, (p, time), v)?,
         Points::Area => by_area(surface, time, v),
     };
     let to_light = point - p;
     let distance_squared = to_light.length_squared();
     let distance = distance_squared.sqrt();
-    let cos = -frame.n.dot(to_light) / distance;
+    let cos = -n.dot(to_light) / distance;
     if cos <= 0.0 || distance == 0.0 {
         return None;
     }
@@ -293,10 +292,10 @@ fn of_surface(
     Some(LightSample { to_light, distance, le, weight: 1.0 / pdf.0, pdf: Some(pdf), pmf, surface: id })
 }
 
-#[inline]
+#[inline(always)]
 fn by_area(surface: &Surface, time: f64, v: (f64, f64)) -> Point {
     let (point, frame) = surface.sample_area(v);
-    (point + surface.velocity * time, frame, None)
+    (point + surface.velocity * time, frame.n, None)
 }
 
 /// Uniform over the solid angle, or over the area where the shape has no such map; nothing where the shape subtends no
@@ -314,5 +313,5 @@ fn by_solid_angle(surface: &Surface, (p, time): (DVec3, f64), v: (f64, f64)) -> 
         _ => return Some(by_area(surface, time, v)),
     };
     let (point, frame) = surface.at(sample.point);
-    Some((point + moved, frame, Some(sample.solid_angle)))
+    Some((point + moved, frame.n, Some(sample.solid_angle)))
 }

@@ -136,7 +136,7 @@ impl Scene {
     }
 
     /// What the ray meets first at `time`: `None` for the void around an open scene and for a back, which is black.
-    #[inline]
+    #[inline(always)]
     pub fn intersect(&self, ray: &Ray, time: f64) -> Option<Hit<'_>> {
         let (mut t, mut id) = self.rectangles.nearest(ray);
         let (t_sphere, sphere) = self.spheres.nearest(ray);
@@ -235,6 +235,7 @@ impl Scene {
     }
 }
 
+#[inline(always)]
 fn sky_hit<'a>(sky: &Sky, ray: &Ray) -> Hit<'a> {
     let (p, frame) = (ray.o + ray.d * sky::FAR, Frame::around(-ray.d));
     Hit { p, frame, wo: -ray.d, material: &BLACK, le: sky.radiance(ray.d), surface: SKY }

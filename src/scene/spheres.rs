@@ -46,6 +46,13 @@ impl Spheres {
     /// Distance and number of the nearest band along a ray of unit direction; infinity if there is none.
     #[inline]
     pub fn nearest(&self, ray: &Ray) -> (f64, u32) {
+        if self.spheres.is_empty() {
+            return (f64::INFINITY, 0);
+        }
+        self.nearest_of_some(ray)
+    }
+
+    fn nearest_of_some(&self, ray: &Ray) -> (f64, u32) {
         let from = self.sphere_of(ray.from);
         let mut best = (f64::INFINITY, 0);
         for (i, sphere) in self.spheres.iter().enumerate() {

@@ -57,7 +57,7 @@ impl Surface {
     }
 
     /// A point uniform over the area, and the frame of the front's normal there.
-    #[inline]
+    #[inline(always)]
     pub fn sample_area(&self, u: (f64, f64)) -> (DVec3, Frame) {
         match &self.shape {
             Shape::Rectangle(r) => {
