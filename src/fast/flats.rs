@@ -16,21 +16,12 @@ struct Plane {
     id: u32,
 }
 
-/// What of a plane belongs to the surface.
-#[derive(Clone, Copy, Debug)]
-enum Outline {
-    /// |a| <= 1, |b| <= 1
-    Rectangle,
-    /// a >= 0, b >= 0, a + b <= 1
-    Triangle,
-    /// a² + b² <= 1
-    Disk,
-}
-
 /// The flat surfaces of a scene, by outline.
 #[derive(Clone, Debug)]
 pub struct Flats {
-    planes: [(Outline, Vec<Plane>); 3],
+    rectangles: Vec<Plane>,
+    triangles: Vec<Plane>,
+    disks: Vec<Plane>,
 }
 
 /// Sixteen rays, or segments, and the surfaces that they leave.
@@ -56,22 +47,27 @@ pub struct Nearest<S: Simd> {
 impl Flats {
     /// Collects the flat surfaces.
     pub fn new(surfaces: &[Surface]) -> Self {
-        let mut planes = [Outline::Rectangle, Outline::Triangle, Outline::Disk].map(|o| (o, Vec::new()));
+        let mut flats = Flats { rectangles: Vec::new(), triangles: Vec::new(), disks: Vec::new() };
         for (id, surface) in (0..).zip(surfaces) {
             let (list, origin, u, v) = match &surface.shape {
                 Shape::Rectangle(r) => {
                     let (u, v) = (r.half_u, r.half_v);
-                    (0, r.center, u / u.length_squared(), v / v.length_squared())
+                    (&mut flats.rectangles, r.center, u / u.length_squared(), v / v.length_squared())
                 }
                 Shape::Triangle(t) => {
                     // the vectors whose products with the edges are 1 and 0 [dual basis]
                     let (e, f) = (t.b - t.a, t.c - t.a);
                     let n = e.cross(f);
-                    (1, t.a, f.cross(n) / n.length_squared(), n.cross(e) / n.length_squared())
+                    (
+                        &mut flats.triangles,
+                        t.a,
+                        f.cross(n) / n.length_squared(),
+                        n.cross(e) / n.length_squared(),
+                    )
                 }
                 Shape::Disk(d) => {
                     let u = d.normal.any_orthonormal_vector();
-                    (2, d.center, u / d.radius, d.normal.cross(u) / d.radius)
+                    (&mut flats.disks, d.center, u / d.radius, d.normal.cross(u) / d.radius)
                 }
                 Shape::Sphere(_) => continue,
             };
@@ -79,22 +75,17 @@ impl Flats {
             let at = |w: glam::DVec3| w.dot(origin) as f32;
             let (n0, u0, v0) = (at(n), at(u), at(v));
             let (n, u, v) = (narrow(n), narrow(u), narrow(v));
-            planes[list].1.push(Plane { n, n0, u, u0, v, v0, id });
+            list.push(Plane { n, n0, u, u0, v, v0, id });
         }
-        Flats { planes }
+        flats
     }
 
     /// Looks for what is nearer than what was met before.
     #[inline(always)]
     pub fn nearest<S: Simd>(&self, rays: &Rays<S>, mut met: Nearest<S>) -> Nearest<S> {
-        for (outline, planes) in &self.planes {
-            for plane in planes {
-                let (t, inside) = plane.crossed(*outline, rays);
-                let nearer = inside & t.simd_lt(met.t) & rays.from.simd_ne(plane.id);
-                met.t = nearer.select(t, met.t);
-                met.id = nearer.select(U::splat(t.token(), plane.id), met.id);
-            }
-        }
+        self.rectangles.iter().for_each(|plane| plane.meet(rays, in_rectangle, &mut met));
+        self.triangles.iter().for_each(|plane| plane.meet(rays, in_triangle, &mut met));
+        self.disks.iter().for_each(|plane| plane.meet(rays, in_disk, &mut met));
         met
     }
 
@@ -102,30 +93,50 @@ impl Flats {
     #[inline(always)]
     pub fn block<S: Simd>(&self, rays: &Rays<S>, to: U<S>) -> M<S> {
         let mut blocked = M::splat(to.token(), false);
-        for (outline, planes) in &self.planes {
-            for plane in planes {
-                let (t, inside) = plane.crossed(*outline, rays);
-                let between = rays.from.simd_ne(plane.id) & to.simd_ne(plane.id);
-                blocked |= inside & t.simd_lt(1.0) & between;
-            }
-        }
+        self.rectangles.iter().for_each(|plane| blocked |= plane.blocks(rays, to, in_rectangle));
+        self.triangles.iter().for_each(|plane| blocked |= plane.blocks(rays, to, in_triangle));
+        self.disks.iter().for_each(|plane| blocked |= plane.blocks(rays, to, in_disk));
         blocked
     }
 }
 
+#[inline(always)]
+fn in_rectangle<S: Simd>(a: F<S>, b: F<S>) -> M<S> {
+    a.abs().simd_le(1.0) & b.abs().simd_le(1.0)
+}
+
+#[inline(always)]
+fn in_triangle<S: Simd>(a: F<S>, b: F<S>) -> M<S> {
+    a.simd_ge(0.0) & b.simd_ge(0.0) & (a + b).simd_le(1.0)
+}
+
+#[inline(always)]
+fn in_disk<S: Simd>(a: F<S>, b: F<S>) -> M<S> {
+    (a * a + b * b).simd_le(1.0)
+}
+
 impl Plane {
-    /// Where rays cross the plane, and whether that is ahead and inside the outline.
     #[inline(always)]
-    fn crossed<S: Simd>(&self, outline: Outline, rays: &Rays<S>) -> (F<S>, M<S>) {
+    fn meet<S: Simd>(&self, rays: &Rays<S>, inside: impl Fn(F<S>, F<S>) -> M<S>, met: &mut Nearest<S>) {
+        let (t, a, b) = self.crossed(rays);
+        let nearer = inside(a, b) & t.simd_gt(0.0) & t.simd_lt(met.t) & rays.from.simd_ne(self.id);
+        met.t = nearer.select(t, met.t);
+        met.id = nearer.select(U::splat(t.token(), self.id), met.id);
+    }
+
+    #[inline(always)]
+    fn blocks<S: Simd>(&self, rays: &Rays<S>, to: U<S>, inside: impl Fn(F<S>, F<S>) -> M<S>) -> M<S> {
+        let (t, a, b) = self.crossed(rays);
+        let between = rays.from.simd_ne(self.id) & to.simd_ne(self.id);
+        inside(a, b) & t.simd_gt(0.0) & t.simd_lt(1.0) & between
+    }
+
+    /// Where rays cross the plane: the distance, and the two coordinates.
+    #[inline(always)]
+    fn crossed<S: Simd>(&self, rays: &Rays<S>) -> (F<S>, F<S>, F<S>) {
         let Rays { o, d, .. } = *rays;
         let t = (F::splat(o.x.token(), self.n0) - o.along(&self.n)) / d.along(&self.n);
         let p = o + d * t;
-        let (a, b) = (p.along(&self.u) - self.u0, p.along(&self.v) - self.v0);
-        let inside = match outline {
-            Outline::Rectangle => a.abs().simd_le(1.0) & b.abs().simd_le(1.0),
-            Outline::Triangle => a.simd_ge(0.0) & b.simd_ge(0.0) & (a + b).simd_le(1.0),
-            Outline::Disk => (a * a + b * b).simd_le(1.0),
-        };
-        (t, inside & t.simd_gt(0.0))
+        (t, p.along(&self.u) - self.u0, p.along(&self.v) - self.v0)
     }
 }

@@ -5,19 +5,15 @@ use crate::estimator::{BINS, Tally};
 use crate::scene::{Rgb, Start};
 
 /// Paths that may be under way, or wait for earlier ones to be told of.
-const SLOTS: usize = 256;
+const SLOTS: usize = 128;
 
 /// What one path has come to.
 #[derive(Clone, Copy, Debug, Default)]
 struct Outcome {
-    value: Rgb,
     bounces: [Rgb; BINS],
     /// Number of bins that may not be zero.
     used: usize,
     rays: u64,
-    non_finite: u64,
-    negative: u64,
-    runaway: u64,
     response: f64,
     finished: bool,
 }
@@ -30,22 +26,25 @@ pub struct Outcomes {
     next: usize,
     /// The slot of each lane.
     slot: [usize; WIDTH],
+    /// What went wrong since that was last told.
+    wrong: Tally,
 }
 
 impl Outcomes {
     /// Before the first path.
     pub fn new() -> Self {
-        Outcomes { ring: vec![Outcome::default(); SLOTS], first: 0, next: 0, slot: [0; WIDTH] }
+        let ring = vec![Outcome::default(); SLOTS];
+        Outcomes { ring, first: 0, next: 0, slot: [0; WIDTH], wrong: Tally::default() }
     }
 
     /// Whether another path may set out.
-    #[inline]
+    #[inline(always)]
     pub fn has_room(&self) -> bool {
         self.next < self.first + SLOTS
     }
 
     /// A path sets out in a lane.
-    #[inline]
+    #[inline(always)]
     pub fn start(&mut self, lane: usize, start: &Start) {
         self.slot[lane] = self.next % SLOTS;
         self.ring[self.slot[lane]].response = start.response;
@@ -53,49 +52,50 @@ impl Outcomes {
     }
 
     /// Adds radiance [W m^-2 sr^-1] of light that was scattered `bounce` times.
-    #[inline]
+    #[inline(always)]
     pub fn add(&mut self, lane: usize, bounce: u32, radiance: Rgb) {
         let outcome = &mut self.ring[self.slot[lane]];
         let value = radiance * outcome.response;
-        outcome.non_finite += u64::from(!value.is_finite());
-        outcome.negative += u64::from(value.min_element() < 0.0);
+        if !(value.min_element() >= 0.0 && value.is_finite()) {
+            self.wrong.non_finite += u64::from(!value.is_finite());
+            self.wrong.negative += u64::from(value.min_element() < 0.0);
+        }
         let bin = (bounce as usize).min(BINS - 1);
         outcome.bounces[bin] += value;
-        outcome.value += value;
         outcome.used = outcome.used.max(bin + 1);
     }
 
     /// The path of a lane was cut.
     #[cold]
-    pub fn run_away(&mut self, lane: usize) {
-        self.ring[self.slot[lane]].runaway += 1;
+    pub fn run_away(&mut self) {
+        self.wrong.runaway += 1;
     }
 
     /// The path of a lane has ended.
-    #[inline]
+    #[inline(always)]
     pub fn finish(&mut self, lane: usize, rays: u32) {
         let outcome = &mut self.ring[self.slot[lane]];
         (outcome.rays, outcome.finished) = (u64::from(rays), true);
     }
 
     /// Tells of all paths that have ended and before which none is under way.
-    #[inline]
+    #[inline(always)]
     pub fn tell(&mut self, tally: &mut Tally, told: &mut impl FnMut(&Tally)) {
         while self.first < self.next && self.ring[self.first % SLOTS].finished {
             let outcome = &mut self.ring[self.first % SLOTS];
-            tally.value = outcome.value;
+            tally.value = Rgb::ZERO;
             for bin in 0..outcome.used {
-                tally.bounces[bin] += outcome.bounces[bin];
-                outcome.bounces[bin] = Rgb::ZERO;
+                let added = std::mem::take(&mut outcome.bounces[bin]);
+                tally.bounces[bin] += added;
+                tally.value += added;
             }
             tally.rays += outcome.rays;
-            tally.non_finite += outcome.non_finite;
-            tally.negative += outcome.negative;
-            tally.runaway += outcome.runaway;
-            (outcome.value, outcome.used, outcome.finished) = (Rgb::ZERO, 0, false);
-            (outcome.non_finite, outcome.negative, outcome.runaway) = (0, 0, 0);
+            (outcome.used, outcome.finished) = (0, false);
             self.first += 1;
             told(tally);
         }
+        tally.non_finite += std::mem::take(&mut self.wrong.non_finite);
+        tally.negative += std::mem::take(&mut self.wrong.negative);
+        tally.runaway += std::mem::take(&mut self.wrong.runaway);
     }
 }

@@ -27,6 +27,7 @@ struct Skin {
     /// Radius of a sphere, negative if its front is the inside; 0 for what is flat.
     radius: f32,
     albedo: [f32; 3],
+    emits: bool,
     le: Rgb,
 }
 
@@ -67,7 +68,8 @@ impl<'a> Stage<'a> {
                 flat => (flat.direction(), 0.0),
             };
             let albedo = narrow(s.material.bsdf.albedo(1.0));
-            Skin { n: narrow(n), radius: radius as f32, albedo, le: s.material.le }
+            let le = s.material.le;
+            Skin { n: narrow(n), radius: radius as f32, albedo, emits: le != Rgb::ZERO, le }
         };
         Ok(Stage {
             scene,
@@ -92,7 +94,7 @@ impl<'a> Stage<'a> {
                 (n[c][lane], albedo[c][lane]) = (skin.n[c], skin.albedo[c]);
             }
             radius[lane] = skin.radius;
-            emit |= u64::from(skin.le != Rgb::ZERO) << lane;
+            emit |= u64::from(skin.emits) << lane;
         }
         let vector = |a: [[f32; WIDTH]; 3]| V3 {
             x: F::simd_from(simd, a[0]),

@@ -56,7 +56,7 @@ impl Walk<'_> {
     fn meet<S: Simd>(&self, paths: &mut Paths<S>, out: &mut Outcomes) -> Meeting<S> {
         paths.count(paths.alive);
         let runaway = paths.alive & paths.rays_traced.simd_gt(MAX_RAYS as u32);
-        lanes(runaway).for_each(|lane| out.run_away(lane));
+        lanes(runaway).for_each(|_| out.run_away());
         let x = self.stage.meet(&paths.rays);
         paths.alive &= x.seen & !runaway;
         x
