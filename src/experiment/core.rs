@@ -5,7 +5,7 @@ use super::ledger::Stream;
 use super::plan::CellPlan;
 use super::run::block_of;
 use crate::estimator::Tally;
-use crate::fast::Fast;
+use crate::fast::{self, Fast};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -29,6 +29,14 @@ impl Core {
         match self {
             Core::Textbook => 0.0,
             Core::Fast => 1e-5,
+        }
+    }
+
+    /// Its name, and of the fast one the instruction set that it finds here.
+    pub fn on_this_machine(self) -> String {
+        match self {
+            Core::Textbook => self.to_string(),
+            Core::Fast => format!("{self} {}", fast::instruction_set()),
         }
     }
 }

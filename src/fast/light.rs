@@ -1,6 +1,6 @@
 //! Direct light for sixteen paths at once: from a lone rectangle in lanes, from all else path by path.
 
-use super::flats::Rays;
+use super::rays::Rays;
 use super::stage::{Meeting, Stage};
 use super::stream::Streams;
 use super::vector::{F, M, U, V3, lanes, narrow};

@@ -7,10 +7,12 @@
 //! Vectors come from the crate `fearless_simd`, which picks AVX-512, AVX2, SSE or NEON by the processor; all of them give
 //! the same bits, for no operation is used that IEEE 754 leaves open, and none is fused.
 
-mod flats;
 mod light;
 mod outcome;
 mod paths;
+mod plates;
+mod rays;
+mod rectangles;
 mod spheres;
 mod stage;
 mod stream;

@@ -1,7 +1,7 @@
 //! Sixteen paths under way.
 
-use super::flats::Rays;
 use super::outcome::Outcomes;
+use super::rays::Rays;
 use super::stage::Meeting;
 use super::stream::Streams;
 use super::vector::{F, M, U, V3, WIDTH, lanes};

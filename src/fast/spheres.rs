@@ -1,7 +1,7 @@
 //! Spheres and their bands, met by sixteen rays at once. As in `scene::spheres`: where a ray starts or ends on the sphere,
 //! one root is known exactly and the other follows from it without cancellation.
 
-use super::flats::{Nearest, Rays};
+use super::rays::{Nearest, Rays};
 use super::vector::{F, M, U, V3, narrow};
 use crate::scene::{Shape, Surface};
 use fearless_simd::{Simd, prelude::*};

@@ -1,6 +1,8 @@
 //! A scene in single precision, for sixteen paths at once.
 
-use super::flats::{Flats, Nearest, Rays};
+use super::plates::Plates;
+use super::rays::{Nearest, Rays};
+use super::rectangles::Rectangles;
 use super::spheres::Spheres;
 use super::vector::{F, M, U, V3, WIDTH, narrow};
 use crate::sampling::warp::Frame;
@@ -13,7 +15,8 @@ use glam::DVec3;
 pub struct Stage<'a> {
     /// The scene itself, for all that is not worth lanes.
     pub scene: &'a Scene,
-    flats: Flats,
+    rectangles: Rectangles,
+    plates: Plates,
     spheres: Spheres,
     skins: Vec<Skin>,
     has_spheres: bool,
@@ -73,7 +76,8 @@ impl<'a> Stage<'a> {
         };
         Ok(Stage {
             scene,
-            flats: Flats::new(surfaces),
+            rectangles: Rectangles::new(surfaces),
+            plates: Plates::new(surfaces),
             spheres: Spheres::new(surfaces),
             skins: surfaces.iter().map(skin).collect(),
             has_spheres: surfaces.iter().any(|s| matches!(s.shape, Shape::Sphere(_))),
@@ -85,7 +89,8 @@ impl<'a> Stage<'a> {
     pub fn meet<S: Simd>(&self, rays: &Rays<S>) -> Meeting<S> {
         let simd = rays.from.token();
         let nothing = Nearest { t: F::splat(simd, f32::INFINITY), id: U::splat(simd, 0) };
-        let met = self.spheres.nearest(rays, self.flats.nearest(rays, nothing));
+        let met = self.plates.nearest(rays, self.rectangles.nearest(rays, nothing));
+        let met = self.spheres.nearest(rays, met);
         let (mut n, mut albedo) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
         let (mut radius, mut emit) = ([0.0; WIDTH], 0);
         for lane in 0..WIDTH {
@@ -113,7 +118,7 @@ impl<'a> Stage<'a> {
     /// Where nothing stands between `rays.o` and `rays.o + rays.d` on the surfaces `to`.
     #[inline(always)]
     pub fn visible<S: Simd>(&self, rays: &Rays<S>, to: U<S>) -> M<S> {
-        !(self.flats.block(rays, to) | self.spheres.block(rays, to))
+        !(self.rectangles.block(rays, to) | self.plates.block(rays, to) | self.spheres.block(rays, to))
     }
 
     /// Radiance that a surface emits [W m^-2 sr^-1].

@@ -3,8 +3,7 @@
 
 use crate::estimator::BINS;
 use crate::experiment::row::CHANNELS;
-use crate::experiment::{Cell, CellPlan, Core, Estimand, Plan, Row};
-use crate::fast;
+use crate::experiment::{Cell, Estimand, Plan, Row};
 use crate::stats::tails::Light;
 
 /// The text of `results.csv`.
@@ -113,14 +112,6 @@ pub(super) fn derived(value: Option<f64>) -> String {
     value.map_or_else(String::new, |v| format!("{v:.8e}"))
 }
 
-/// The core, and of the fast one the instruction set that it found here.
-fn core(cell: &CellPlan) -> String {
-    match cell.core {
-        Core::Textbook => cell.core.to_string(),
-        Core::Fast => format!("{} {}", cell.core, fast::instruction_set()),
-    }
-}
-
 /// The text of `timing.csv`.
 pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64]) -> Vec<u8> {
     let mut csv = csv::Writer::from_writer(Vec::new());
@@ -132,7 +123,7 @@ pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64]) -> Vec<u8> {
         let record = [
             plan.name.clone(),
             plan.label(cell_plan),
-            core(cell_plan),
+            cell_plan.core.on_this_machine(),
             cell.cost.n.to_string(),
             format!("{rays:.0}"),
             format!("{seconds:.4}"),
