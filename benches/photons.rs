@@ -2,8 +2,10 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use furnace::estimator::{
-    Ctx, DirectLight, Estimate, Gather, Kernel, Last, LightTracing, PhotonMap, Roulette, Rule, Tally,
+    Ctx, DirectLight, Estimate, Estimator, Gather, Kernel, Last, LightTracing, PhotonMap, Roulette, Rule,
+    Tally,
 };
+use furnace::fast::Fast;
 use furnace::sampling::Address;
 use furnace::scene::Directions;
 use furnace::scene::library::SceneKind;
@@ -47,6 +49,14 @@ fn photons(c: &mut Criterion) {
             let mut cx = Ctx::shared(&scene, address.stream(0, 0), &mut tally);
             black_box(light.begin(0, &mut cx)).at(7).count()
         })
+    });
+    let stored = map(Gather::Within { radius: 0.05 });
+    let Ok(Fast::Particles(fast)) = Fast::of(&scene, &Estimator::PhotonMap(stored)) else { unreachable!() };
+    group.bench_function("sent and stored, fast path", |b| {
+        b.iter(|| black_box(fast.map(&stored, 0, &address, &mut Tally::default())).len())
+    });
+    group.bench_function("light tracing, fast path", |b| {
+        b.iter(|| black_box(fast.film(&light, &address, &mut Tally::default())).at(7).count())
     });
     group.finish();
 

@@ -2,7 +2,7 @@
 //! to the mean, with its standard error. Not a benchmark of time; here because it takes minutes.
 
 use furnace::estimator::{Ctx, Estimate, Estimator, Explicit, Heuristic, Roulette, Rule, Tally, Technique};
-use furnace::fast::Fast;
+use furnace::fast::{Fast, PathTracer};
 use furnace::sampling::Address;
 use furnace::scene::lecture::Lecture;
 use furnace::scene::library::{Patch, SceneKind, View};
@@ -36,7 +36,13 @@ fn scenes() -> Vec<(&'static str, SceneKind)> {
 }
 
 /// Sum of the values, of the differences, and of their squares.
-fn batch(scene: &Scene, estimator: &Estimator, fast: &Fast<'_>, address: &Address, batch: u64) -> [f64; 3] {
+fn batch(
+    scene: &Scene,
+    estimator: &Estimator,
+    fast: &PathTracer<'_>,
+    address: &Address,
+    batch: u64,
+) -> [f64; 3] {
     let (width, height) = scene.sensor.resolution();
     let pixels = u64::from(width * height);
     let starts = || {
@@ -77,7 +83,8 @@ fn main() {
         ] {
             let estimator = explicit(technique);
             let fast = match Fast::of(&scene, &estimator) {
-                Ok(fast) => fast,
+                Ok(Fast::Paths(paths)) => paths,
+                Ok(Fast::Particles(_)) => unreachable!("it is a path tracer"),
                 Err(why) => {
                     println!("{scene_name}: no fast path: {why}");
                     break;

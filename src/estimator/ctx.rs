@@ -1,7 +1,7 @@
 //! What an estimator works with: the scene, a random stream and the tally. Cost accrues here, because only here can
 //! a ray be traced.
 
-use crate::sampling::{PdfW, Stream};
+use crate::sampling::{Address, PdfW, Stream};
 use crate::scene::{Carried, Directions, Emission, Hit, LightSampling, Ray, Rgb, Scene, Start};
 use glam::DVec3;
 
@@ -86,6 +86,16 @@ impl<'a> Ctx<'a> {
     pub fn shared(scene: &'a Scene, stream: Stream, tally: &'a mut Tally) -> Self {
         let limit = tally.rays + MAX_RAYS;
         Ctx { scene, stream, tally, response: 1.0, time: 0.0, pixel: 0, limit }
+    }
+
+    /// An address whose streams belong to this context alone, drawn from its stream.
+    pub fn branch(&mut self) -> Address {
+        self.stream.branch()
+    }
+
+    /// What is counted.
+    pub fn tally(&mut self) -> &mut Tally {
+        self.tally
     }
 
     /// The scene.

@@ -28,7 +28,7 @@ impl Estimate for LightTracing {
 
     fn begin(&self, _: u64, cx: &mut Ctx<'_>) -> Film {
         let particles = Particles { directions: self.directions, roulette: self.roulette };
-        let share = 1.0 / self.particles as f64;
+        let share = self.share();
         let mut film = Film::default();
         for _ in 0..self.particles {
             particles.send(cx, &mut |cx, x, particle| {
@@ -56,6 +56,11 @@ impl Estimate for LightTracing {
 }
 
 impl LightTracing {
+    /// What each particle counts of all light.
+    pub fn share(&self) -> f64 {
+        1.0 / self.particles as f64
+    }
+
     /// What the mirror or glass `x` shows.
     fn behind(&self, x: &Hit<'_>, cx: &mut Ctx<'_>) {
         let LightTracing { directions, roulette, .. } = *self;

@@ -7,7 +7,7 @@
 //! - fails when: ΔA reaches over an edge, or light changes within it
 
 use super::kernel::{Gather, Kernel};
-use super::particles::Particles;
+use super::particles::{Particle, Particles};
 use super::photons::{Photon, Photons};
 use super::{BINS, Ctx, Estimate, Property, Roulette};
 use crate::scene::{Directions, Hit, LightSampling, Ray, Rgb};
@@ -48,13 +48,9 @@ impl Estimate for PhotonMap {
 
     fn begin(&self, realization: u64, cx: &mut Ctx<'_>) -> Photons {
         let particles = Particles { directions: self.directions, roulette: self.roulette };
-        let mut map = Photons::new(self.photons, self.gather, realization);
+        let mut map = self.empty(realization);
         for _ in 0..self.photons {
-            particles.send(cx, &mut |_, x, particle| {
-                if particle.bounce > 0 || !self.leaves_out_direct() {
-                    map.add(x, particle);
-                }
-            });
+            particles.send(cx, &mut |_, x, particle| self.keep(&mut map, x, particle));
         }
         map.grown()
     }
@@ -70,6 +66,19 @@ impl Estimate for PhotonMap {
 }
 
 impl PhotonMap {
+    /// The map of a realization before any photon is sent.
+    pub fn empty(&self, realization: u64) -> Photons {
+        Photons::new(self.photons, self.gather, realization)
+    }
+
+    /// Stores a photon that met `x`, if it will be gathered.
+    #[inline]
+    pub fn keep(&self, map: &mut Photons, x: &Hit<'_>, photon: Particle) {
+        if photon.bounce > 0 || !self.leaves_out_direct() {
+            map.add(x, photon);
+        }
+    }
+
     /// Whether photons that come straight from a light need not be stored: nobody gathers them, and they do not decide how
     /// far the others are gathered.
     fn leaves_out_direct(&self) -> bool {

@@ -5,7 +5,7 @@ use super::ledger::Stream;
 use super::plan::CellPlan;
 use super::run::block_of;
 use crate::estimator::Tally;
-use crate::fast::{self, Fast};
+use crate::fast::{self, Fast, PathTracer};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -74,9 +74,12 @@ impl<'a> Sampler<'a> {
         let draw = |number, pixel| plan.address.stream(number, pixel);
         match (plan.faulty(), &self.fast) {
             (None, None) => block_of(scene, &plan.estimator, &draw, &plan.streams, realizations),
-            (None, Some(fast)) => {
+            (None, Some(Fast::Paths(paths))) => {
                 let draw = |number, pixel| plan.address.narrow_stream(number, pixel);
-                fast_block_of(scene, fast, &draw, &plan.streams, realizations)
+                fast_block_of(scene, paths, &draw, &plan.streams, realizations)
+            }
+            (None, Some(Fast::Particles(particles))) => {
+                block_of(scene, particles, &draw, &plan.streams, realizations)
             }
             (Some(faulty), _) => {
                 let draw = |number, pixel| draw(faulty.realization(number), pixel);
@@ -89,7 +92,7 @@ impl<'a> Sampler<'a> {
 /// What [`block_of`] does, by the fast path; `draw` gives narrow streams.
 pub fn fast_block_of(
     scene: &Scene,
-    fast: &Fast<'_>,
+    fast: &PathTracer<'_>,
     draw: &impl Fn(u64, u64) -> crate::sampling::Stream,
     streams: &[Stream],
     realizations: Range<u64>,

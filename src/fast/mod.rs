@@ -9,12 +9,14 @@
 
 mod light;
 mod outcome;
+mod particles;
 mod paths;
 mod plates;
 mod rays;
 mod rectangles;
 mod spheres;
 mod stage;
+mod steps;
 mod stream;
 mod vector;
 mod walk;
@@ -25,8 +27,8 @@ use crate::sampling::Stream;
 use crate::scene::{LightSampling, Scene, Start};
 pub use fearless_simd::Level;
 use fearless_simd::{Simd, dispatch, prelude::*};
-use light::Lamp;
 use outcome::Outcomes;
+pub use particles::Particles;
 use paths::Paths;
 use stage::Stage;
 use vector::lanes;
@@ -39,16 +41,18 @@ pub fn instruction_set() -> String {
     level.split('(').next().unwrap_or_default().to_lowercase()
 }
 
-/// A path tracer that follows sixteen paths at once.
-pub struct Fast<'a> {
-    walk: Walk<'a>,
-    /// The instruction set.
-    level: Level,
+/// What an estimator does sixteen times at once.
+pub enum Fast<'a> {
+    /// Its paths.
+    Paths(PathTracer<'a>),
+    /// Its particles; paths from the eye, and photons that are gathered there, are the estimator's.
+    Particles(Particles<'a>),
 }
 
 impl<'a> Fast<'a> {
     /// The fast path for an estimator in a scene; why there is none, where there is none.
     pub fn of(scene: &'a Scene, estimator: &Estimator) -> Result<Self, &'static str> {
+        let (stage, level) = (Stage::of(scene)?, Level::new());
         let tracer = match *estimator {
             Estimator::Explicit(explicit) => explicit,
             Estimator::Implicit(e) => Explicit {
@@ -57,16 +61,28 @@ impl<'a> Fast<'a> {
                 directions: e.directions,
                 roulette: e.roulette,
             },
-            _ => return Err("the estimator has no fast path"),
+            Estimator::LightTracing(_) | Estimator::PhotonMap(_) => {
+                let particles = Particles::of(stage, *estimator, level);
+                return Ok(Fast::Particles(particles.expect("it sends particles")));
+            }
+            Estimator::Recursive(_) => return Err("the estimator has no fast path"),
         };
-        let stage = Stage::of(scene)?;
-        let lamp = Lamp::of(&stage, tracer.lights);
-        Ok(Fast { walk: Walk { stage, tracer, lamp }, level: Level::new() })
+        Ok(Fast::Paths(PathTracer { walk: Walk::new(stage, tracer), level }))
     }
+}
 
+/// A path tracer that follows sixteen paths at once.
+#[derive(Clone)]
+pub struct PathTracer<'a> {
+    walk: Walk<'a>,
+    /// The instruction set.
+    level: Level,
+}
+
+impl PathTracer<'_> {
     /// The same with another instruction set of this machine.
     pub fn on(&self, level: Level) -> Self {
-        Fast { walk: self.walk.clone(), level }
+        PathTracer { level, ..self.clone() }
     }
 
     /// Follows all paths that `next` sets out, each with its narrow stream, and adds them to a tally, which is shown to `told`
@@ -99,6 +115,7 @@ impl<'a> Fast<'a> {
                 paths.start(lane, &start, &stream);
             }
             if paths.alive.all_false() {
+                tally.runaway += paths.runaway;
                 return;
             }
             let before = paths.alive;

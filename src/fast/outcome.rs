@@ -65,12 +65,6 @@ impl Outcomes {
         outcome.used = outcome.used.max(bin + 1);
     }
 
-    /// The path of a lane was cut.
-    #[cold]
-    pub fn run_away(&mut self) {
-        self.wrong.runaway += 1;
-    }
-
     /// The path of a lane has ended.
     #[inline(always)]
     pub fn finish(&mut self, lane: usize, rays: u32) {
@@ -96,6 +90,5 @@ impl Outcomes {
         }
         tally.non_finite += std::mem::take(&mut self.wrong.non_finite);
         tally.negative += std::mem::take(&mut self.wrong.negative);
-        tally.runaway += std::mem::take(&mut self.wrong.runaway);
     }
 }

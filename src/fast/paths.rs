@@ -24,6 +24,8 @@ pub struct Paths<S: Simd> {
     pub bounce: U<S>,
     /// Rays traced so far.
     pub rays_traced: U<S>,
+    /// Paths that were cut because they traced more rays than any sound walk.
+    pub runaway: u64,
     /// Where their chance comes from.
     pub streams: Streams<S>,
     /// Copies that wait for their turn.
@@ -55,6 +57,7 @@ impl<S: Simd> Paths<S> {
             pdf: F::splat(simd, 0.0),
             bounce: none,
             rays_traced: none,
+            runaway: 0,
             streams: Streams::new(simd),
             waiting: Default::default(),
             waits: false,

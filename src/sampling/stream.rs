@@ -103,6 +103,12 @@ impl Stream {
         (self.u1(), self.u1())
     }
 
+    /// An address that is drawn from this stream: 106 random bits of a wide one, or 48.
+    pub fn branch(&mut self) -> Address {
+        let mut word = || mix(self.u1().to_bits());
+        Address { key: [word(), word()] }
+    }
+
     /// Where a narrow stream has got to; `None` for a wide one.
     #[inline]
     pub fn narrow_state(&self) -> Option<[u32; 4]> {

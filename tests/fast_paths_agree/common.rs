@@ -1,7 +1,7 @@
 //! Scenes and estimators that have a fast path, and paths followed by both.
 
 use furnace::estimator::{Ctx, Estimate, Estimator, Roulette, Rule, Tally};
-use furnace::fast::Fast;
+use furnace::fast::PathTracer;
 use furnace::sampling::Address;
 use furnace::scene::camera::Camera;
 use furnace::scene::geometry::{Disk, Rectangle, Triangle};
@@ -131,7 +131,7 @@ pub fn textbook(scene: &Scene, estimator: &Estimator, seed: &str, paths: u64) ->
 }
 
 /// The same paths by the fast path.
-pub fn fast(scene: &Scene, fast: &Fast<'_>, seed: &str, paths: u64) -> Vec<Told> {
+pub fn fast(scene: &Scene, fast: &PathTracer<'_>, seed: &str, paths: u64) -> Vec<Told> {
     let mut starts = starts(scene, seed, paths);
     let (mut told, mut rays) = (Vec::new(), 0);
     fast.trace(&mut Tally::default(), &mut || starts.next(), &mut |tally| {

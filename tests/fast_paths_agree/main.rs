@@ -6,14 +6,16 @@
 //! one; of those there are at most [`ASTRAY`]. `cargo bench --bench rounding` measures what that does to the mean.
 
 mod common;
+mod particles;
 
 use common::{Told, fast, rules, scenes, textbook};
-use furnace::estimator::{Estimator, LightTracing, Roulette, Rule};
+use furnace::estimator::{Estimator, Recursive, Roulette, Rule};
 use furnace::experiment::core::fast_block_of;
 use furnace::experiment::run::block_of;
-use furnace::fast::{Fast, Level};
+use furnace::fast::{Fast, Level, PathTracer};
 use furnace::sampling::Address;
 use furnace::scene::Directions;
+use furnace::scene::Scene;
 use furnace::scene::library::SceneKind;
 use rayon::prelude::*;
 
@@ -30,6 +32,15 @@ fn path_tracers(roulette: Roulette) -> Vec<Estimator> {
     Estimator::catalogue(roulette).into_iter().filter(|e| !recursive(e)).collect()
 }
 
+/// The fast path of an estimator, where there is one.
+fn path_tracer<'a>(scene: &'a Scene, estimator: &Estimator) -> Option<PathTracer<'a>> {
+    match Fast::of(scene, estimator) {
+        Ok(Fast::Paths(paths)) => Some(paths),
+        Ok(Fast::Particles(_)) => panic!("{estimator:?} is a path tracer"),
+        Err(_) => None,
+    }
+}
+
 fn same_value(a: &Told, b: &Told) -> bool {
     (a.value - b.value).abs().max_element() <= ROUNDING * a.value.max_element()
 }
@@ -40,11 +51,11 @@ fn path_by_path() {
     let offered = scenes().into_par_iter().filter_map(|(name, kind)| {
         let scene = kind.build();
         let first = path_tracers(Roulette::depth_clamp(1))[0];
-        Fast::of(&scene, &first).ok()?;
+        path_tracer(&scene, &first)?;
         for (rule, roulette) in rules() {
             let (mut paths, mut astray, mut other_rays) = (0, 0, 0);
             for estimator in path_tracers(roulette) {
-                let lanes = Fast::of(&scene, &estimator).expect("one estimator was accepted, so all are");
+                let lanes = path_tracer(&scene, &estimator).expect("one estimator was accepted, so all are");
                 let reference = textbook(&scene, &estimator, &name, PATHS);
                 let told = fast(&scene, &lanes, &name, PATHS);
                 assert_eq!(reference.len(), told.len());
@@ -115,7 +126,7 @@ fn all_instruction_sets_give_the_same_bits() {
     for (name, kind) in scenes() {
         let scene = kind.build();
         for estimator in path_tracers(splitting).into_iter().chain(path_tracers(rules()[5].1)) {
-            let Ok(lanes) = Fast::of(&scene, &estimator) else { continue };
+            let Some(lanes) = path_tracer(&scene, &estimator) else { continue };
             let bits = |level: &Level| -> Vec<([u64; 3], u64)> {
                 let told = fast(&scene, &lanes.on(*level), &name, 128);
                 told.iter().map(|t| (t.value.to_array().map(f64::to_bits), t.rays)).collect()
@@ -134,7 +145,7 @@ fn a_path_does_not_depend_on_its_neighbours() {
         let scene = kind.build();
         for (rule, roulette) in rules() {
             for estimator in path_tracers(roulette) {
-                let lanes = Fast::of(&scene, &estimator).unwrap();
+                let lanes = path_tracer(&scene, &estimator).unwrap();
                 let many = fast(&scene, &lanes, &name, 200);
                 for few in [1, 15, 16, 17] {
                     assert_eq!(many[..few], fast(&scene, &lanes, &name, few as u64), "{name} {rule}");
@@ -150,7 +161,7 @@ fn blocks_are_made_of_the_same_realizations() {
     for (name, kind) in scenes() {
         let scene = kind.build();
         let estimator = path_tracers(throughput)[1];
-        let Ok(lanes) = Fast::of(&scene, &estimator) else { continue };
+        let Some(lanes) = path_tracer(&scene, &estimator) else { continue };
         let address = Address::of(&["blocks", &name]);
         let draw = |realization, pixel| address.narrow_stream(realization, pixel);
         let (width, height) = scene.sensor.resolution();
@@ -178,8 +189,8 @@ fn blocks_are_made_of_the_same_realizations() {
 fn what_has_no_fast_path_says_why() {
     let scene = SceneKind::CornellBox { resolution: 4 }.build();
     let directions = Directions::Cosine;
-    let light = LightTracing { particles: 1, directions, roulette: Roulette::depth_clamp(1) };
-    let why = Fast::of(&scene, &Estimator::LightTracing(light)).err();
+    let recursive = Recursive { samples: 2, directions, roulette: Roulette::depth_clamp(1) };
+    let why = Fast::of(&scene, &Estimator::Recursive(recursive)).err();
     assert_eq!(why, Some("the estimator has no fast path"));
     let why = |wanted: &str| {
         let kind = scenes().into_iter().find(|(name, _)| name == wanted).unwrap().1;
