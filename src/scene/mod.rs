@@ -15,6 +15,7 @@ pub mod lanes;
 pub mod lecture;
 pub mod library;
 pub mod light;
+pub mod many_spheres;
 pub mod microfacet;
 pub mod sky;
 pub mod solid_angle;
