@@ -167,7 +167,7 @@ impl Lights {
         let last = self.lights.last()?;
         Some(match pick {
             Pick::Power => {
-                let light = self.lights.iter().find(|l| u < l.cdf).unwrap_or(last);
+                let light = self.lights.get(self.lights.partition_point(|l| l.cdf <= u)).unwrap_or(last);
                 (light, light.pmf)
             }
             Pick::Uniform => {
@@ -175,6 +175,18 @@ impl Lights {
                 (&self.lights[((u * n as f64) as usize).min(n - 1)], 1.0 / n as f64)
             }
         })
+    }
+
+    /// The light that this surface is, if it is one. Surfaces come first, in their order; the sky is last.
+    #[inline]
+    fn of(&self, surface: u32) -> Option<&Light> {
+        let number = |light: &Light| match light.emitter {
+            Emitter::Surface(id, _) => id,
+            Emitter::Point(_) | Emitter::Sky(_) => SKY,
+        };
+        let first = self.lights.partition_point(|light| number(light) < surface);
+        let light = if surface == SKY { self.lights.last() } else { self.lights.get(first) };
+        light.filter(|light| number(light) == surface && !matches!(light.emitter, Emitter::Point(_)))
     }
 
     /// See [`super::Scene::sample_light`].
@@ -231,12 +243,7 @@ impl Lights {
         if cos <= 0.0 {
             return PdfW(0.0); // the back of a clear interface, which emits nothing
         }
-        let is_hit = |l: &&Light| match l.emitter {
-            Emitter::Surface(id, _) => id == hit.surface,
-            Emitter::Sky(_) => hit.surface == SKY,
-            Emitter::Point(_) => false,
-        };
-        let Some(light) = self.lights.iter().find(is_hit) else { return PdfW(0.0) };
+        let Some(light) = self.of(hit.surface) else { return PdfW(0.0) };
         let pmf = match how.pick {
             Pick::Power => light.pmf,
             Pick::Uniform => 1.0 / self.lights.len() as f64,
