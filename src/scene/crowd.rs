@@ -4,6 +4,7 @@
 //! answers which would have been asked first: the result has the same bits with and without the tree.
 
 use super::geometry::NOWHERE;
+use super::lanes;
 use super::spheres::{Ball, Spheres};
 use super::tree::Tree;
 use super::{Ray, Shape, Surface};
@@ -52,11 +53,11 @@ struct Plane {
 }
 
 /// What is nearest so far. Among equals the lowest rank counts, which is the order of being asked without a tree:
-/// rectangles, spheres, all others.
+/// rectangles, spheres, all others; and the order within each of these.
 struct Nearest {
     t: f64,
     id: u32,
-    rank: u32,
+    rank: (u8, u32),
 }
 
 impl Crowd {
@@ -99,9 +100,7 @@ impl Crowd {
                 let (n, u, v) =
                     (r.normal(), r.half_u / r.half_u.length_squared(), r.half_v / r.half_v.length_squared());
                 let [n0, u0, v0] = [n, u, v].map(|axis| axis.dot(r.center));
-                // lanes prefer a lower lane to a lower group, within eight groups of eight
-                let slot = rectangles.partition_point(|&other| other < id) as u32;
-                let rank = slot / 64 * 64 + slot % 8 * 8 + slot / 8 % 8;
+                let rank = lanes::rank(rectangles.partition_point(|&other| other < id) as u32);
                 self.planes.push(Plane { n, n0, u, u0, v, v0, id, rank });
                 Member::Plane(self.planes.len() as u32 - 1)
             }
@@ -117,7 +116,7 @@ impl Crowd {
         !self.planes.is_empty()
     }
 
-    /// Whether triangles and disks like this one are among them.
+    /// Whether it is a triangle or a disk that is among them.
     pub fn takes(surface: &Surface) -> bool {
         is_flat(surface)
     }
@@ -126,7 +125,7 @@ impl Crowd {
     #[inline]
     pub fn nearer(&self, ray: &Ray, best: (f64, u32)) -> (f64, u32) {
         let from = self.spheres.sphere_of(ray.from);
-        let mut nearest = Nearest { t: best.0, id: best.1, rank: 0 };
+        let mut nearest = Nearest { t: best.0, id: best.1, rank: (0, 0) };
         self.tree.nearest(ray, best.0, |leaf| {
             for member in &self.members[leaf] {
                 self.meet(member, ray, from, &mut nearest);
@@ -146,20 +145,19 @@ impl Crowd {
                     whole.or_else(|| self.spheres.all()[number as usize].band_at(p))
                 });
                 if met.1 != NOWHERE {
-                    nearest.offer(met.0, met.1, self.after_planes() + number);
+                    nearest.offer(met.0, met.1, (1, number));
                 }
             }
             Member::Plane(i) => {
                 let plane = &self.planes[i as usize];
                 if plane.id != ray.from {
-                    nearest.offer(plane.distance(ray), plane.id, plane.rank);
+                    nearest.offer(plane.distance(ray), plane.id, (0, plane.rank));
                 }
             }
             Member::Flat(i) => {
                 let (shape, id) = &self.flats[i as usize];
                 if *id != ray.from {
-                    let rank = self.after_planes() + self.spheres.all().len() as u32 + id;
-                    nearest.offer(shape.intersect_flat(ray), *id, rank);
+                    nearest.offer(shape.intersect_flat(ray), *id, (2, *id));
                 }
             }
         }
@@ -188,17 +186,11 @@ impl Crowd {
         };
         self.tree.any(segment, |leaf: Range<usize>| self.members[leaf].iter().any(blocks))
     }
-
-    /// A rank behind those of all rectangles.
-    #[inline]
-    fn after_planes(&self) -> u32 {
-        (self.planes.len() as u32).next_multiple_of(64) + 1
-    }
 }
 
 impl Nearest {
     #[inline]
-    fn offer(&mut self, t: f64, id: u32, rank: u32) {
+    fn offer(&mut self, t: f64, id: u32, rank: (u8, u32)) {
         if t < self.t || t == self.t && t < f64::INFINITY && rank < self.rank {
             *self = Nearest { t, id, rank };
         }
