@@ -60,7 +60,7 @@ fn estimators_agree_among_them() {
     ];
     for count in [10, 5000] {
         let scene = SceneKind::ManySpheres { count, resolution: 8 }.build();
-        let cells = estimators.clone().map(|estimator| {
+        let cells = estimators.map(|estimator| {
             let address = Address::of(&["many_balls", &format!("{count} {estimator:?}")]);
             let cell = sample(&scene, &estimator, &address, 2048, 16);
             assert_eq!(cell.invalid(), None);

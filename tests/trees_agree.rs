@@ -222,7 +222,14 @@ fn of_spheres_around_one_point() {
     let axis = DVec3::Z;
     let around = |i: u32| {
         let radius = 1.0 + f64::from(i) / 4096.0;
-        let ball = SpherePatch { center: DVec3::ONE, radius, axis, low: -1.0, high: 1.0, inward: i % 2 == 0 };
+        let ball = SpherePatch {
+            center: DVec3::ONE,
+            radius,
+            axis,
+            low: -1.0,
+            high: 1.0,
+            inward: i.is_multiple_of(2),
+        };
         Surface::new(Shape::Sphere(ball), CLEAR)
     };
     let equal = |_| Surface::new(Shape::Disk(Disk { center: DVec3::X, normal: axis, radius: 0.5 }), CLEAR);
