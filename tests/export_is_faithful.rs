@@ -358,6 +358,7 @@ fn every_scene_of_the_library() {
     holds(&SceneKind::Lecture(Lecture::VeachMis { resolution }).build());
     holds(&SceneKind::Lecture(Lecture::Dof { aperture: 0.08, resolution }).build());
     holds(&SceneKind::Lecture(Lecture::Motion { travel: 0.0, resolution }).build());
+    holds(&SceneKind::ManySpheres { count: 40, resolution }.build());
     for (tile, blocks) in (0..6).flat_map(|tile| [(tile, false), (tile, true)]) {
         holds(&SceneKind::CornellFlush { tile, blocks }.build());
     }

@@ -10,6 +10,9 @@ use crate::scene::{Bsdf, Hit, Rgb, Scene, Shape};
 use fearless_simd::{Simd, prelude::*};
 use glam::DVec3;
 
+/// As many surfaces cost about as much here, where each is asked, as one path after the other with a tree.
+const MOST: usize = 128;
+
 /// The surfaces of a scene, in structures of arrays.
 #[derive(Clone)]
 pub struct Stage<'a> {
@@ -57,6 +60,9 @@ impl<'a> Stage<'a> {
         let surfaces = scene.surfaces();
         if scene.moves() {
             return Err("something moves");
+        }
+        if surfaces.len() > MOST {
+            return Err("so many surfaces are found sooner through a tree");
         }
         if scene.sky().is_some() {
             return Err("there is a sky");

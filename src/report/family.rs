@@ -45,6 +45,7 @@ fn swept(lookup: &Lookup<'_>, cell: usize) -> Option<&'static str> {
         SceneKind::Exhibit { name, .. } => gallery::find(name)?.parameter.name,
         SceneKind::IntegratingSphere { .. } => "light_fraction",
         SceneKind::CornellFlush { .. } => "tile",
+        SceneKind::ManySpheres { .. } => "count",
         SceneKind::Lecture(Lecture::CausticGlass { .. } | Lecture::CausticMirror { .. }) => "light",
         SceneKind::Lecture(Lecture::Dof { .. }) => "aperture",
         SceneKind::Lecture(Lecture::Motion { .. }) => "travel",

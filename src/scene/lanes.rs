@@ -80,6 +80,13 @@ impl RectangleLanes {
     }
 }
 
+/// Place of the i-th rectangle in the order in which they are preferred among equals: by what is held at once, by lane,
+/// by group.
+pub(super) fn rank(i: u32) -> u32 {
+    let (width, chunk) = (WIDTH as u32, CHUNK as u32);
+    i / (width * chunk) * (width * chunk) + i % width * chunk + i / width % chunk
+}
+
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw", "x86_64+avx2"))]
 fn nearest(groups: &[Group], ray: &Ray, own: f64) -> (f64, u32) {
     let mut t = [[f64::INFINITY; WIDTH]; CHUNK];

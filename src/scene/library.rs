@@ -5,6 +5,7 @@ use super::cornell::cornell;
 use super::cornell_flush::cornell_flush;
 use super::geometry::{Rectangle, SpherePatch};
 use super::lecture::Lecture;
+use super::many_spheres;
 use super::{Material, PointLight, Rgb, Scene, Sensor, Shape, Sky, Surface};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -56,6 +57,13 @@ pub enum SceneKind {
         tile: usize,
         /// Whether the two blocks stand in it.
         blocks: bool,
+    },
+    /// A room full of balls; see [`super::many_spheres`].
+    ManySpheres {
+        /// How many, in [`super::many_spheres::COUNTS`].
+        count: u32,
+        /// Pixels along each edge of the image.
+        resolution: u32,
     },
     /// A scene of lectures, hard for some estimators and without a closed form.
     Lecture(Lecture),
@@ -136,6 +144,7 @@ impl SceneKind {
             SceneKind::CornellBox { resolution } => cornell(true, *resolution),
             SceneKind::CornellEmpty { resolution } => cornell(false, *resolution),
             SceneKind::CornellFlush { tile, blocks } => cornell_flush(*tile, *blocks),
+            SceneKind::ManySpheres { count, resolution } => many_spheres::scene(*count, *resolution),
             SceneKind::Lecture(lecture) => lecture.build(),
             SceneKind::Exhibit { setting, .. } | SceneKind::Custom(setting) => setting.build(),
         }

@@ -1,6 +1,7 @@
 //! What emits: surfaces, points and the sky; how one of them is picked, and how a point on it is drawn.
 
 pub mod emission;
+mod pick;
 
 use super::sky::{FAR, SKY, Sky};
 use super::{Hit, Ray, Rgb, Shape, Surface, geometry::NOWHERE, solid_angle};
@@ -160,23 +161,6 @@ impl Lights {
         })
     }
 
-    /// One light and the probability of its choice.
-    #[inline]
-    fn pick(&self, pick: Pick, u: f64) -> Option<(&Light, f64)> {
-        // the last one catches a cdf that rounding leaves below 1
-        let last = self.lights.last()?;
-        Some(match pick {
-            Pick::Power => {
-                let light = self.lights.iter().find(|l| u < l.cdf).unwrap_or(last);
-                (light, light.pmf)
-            }
-            Pick::Uniform => {
-                let n = self.lights.len();
-                (&self.lights[((u * n as f64) as usize).min(n - 1)], 1.0 / n as f64)
-            }
-        })
-    }
-
     /// See [`super::Scene::sample_light`].
     #[inline]
     pub fn sample(
@@ -231,12 +215,7 @@ impl Lights {
         if cos <= 0.0 {
             return PdfW(0.0); // the back of a clear interface, which emits nothing
         }
-        let is_hit = |l: &&Light| match l.emitter {
-            Emitter::Surface(id, _) => id == hit.surface,
-            Emitter::Sky(_) => hit.surface == SKY,
-            Emitter::Point(_) => false,
-        };
-        let Some(light) = self.lights.iter().find(is_hit) else { return PdfW(0.0) };
+        let Some(light) = self.of(hit.surface) else { return PdfW(0.0) };
         let pmf = match how.pick {
             Pick::Power => light.pmf,
             Pick::Uniform => 1.0 / self.lights.len() as f64,

@@ -9,17 +9,20 @@ pub mod camera;
 pub mod connection;
 mod cornell;
 pub mod cornell_flush;
+mod crowd;
 pub mod fresnel;
 pub mod geometry;
 pub mod lanes;
 pub mod lecture;
 pub mod library;
 pub mod light;
+pub mod many_spheres;
 pub mod microfacet;
 pub mod sky;
 pub mod solid_angle;
 pub mod spheres;
 mod surface;
+mod tree;
 
 pub use bsdf::{Bsdf, Carried, DirectionSample, Directions, Material};
 pub use camera::Sensor;
@@ -32,6 +35,7 @@ pub use surface::Surface;
 
 use crate::sampling::warp::Frame;
 use crate::sampling::{PdfW, Stream};
+use crowd::Crowd;
 use glam::DVec3;
 use lanes::RectangleLanes;
 use light::Lights;
@@ -86,6 +90,8 @@ pub struct Scene {
     spheres: Spheres,
     /// Triangles, disks and what moves.
     others: Vec<u32>,
+    /// Primitives that are too many for the three lists above, and not in them.
+    crowd: Option<Crowd>,
     moves: bool,
     lights: Lights,
     /// What is measured.
@@ -119,12 +125,25 @@ impl Scene {
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
         let around = (0.5 * (low + high), 0.5 * (high - low).length());
         let lights = Lights::new(&surfaces, points, sky, around);
-        let rectangles = RectangleLanes::new(&surfaces);
-        let spheres = Spheres::new(&surfaces);
-        let is_other = |s: &Surface| s.moves() || matches!(s.shape, Shape::Triangle(_) | Shape::Disk(_));
+        Scene::of(Crowd::new(&surfaces), surfaces, lights, sensor)
+    }
+
+    /// The same scene without a tree: each of its primitives is asked in turn, for the tree to be held to.
+    pub fn without_tree(&self) -> Self {
+        Scene::of(None, self.surfaces.clone(), self.lights.clone(), self.sensor)
+    }
+
+    fn of(crowd: Option<Crowd>, surfaces: Vec<Surface>, lights: Lights, sensor: Sensor) -> Self {
+        let listed = |is_crowded: bool| if is_crowded { &[] } else { &surfaces[..] };
+        let rectangles = RectangleLanes::new(listed(crowd.as_ref().is_some_and(Crowd::has_rectangles)));
+        let spheres = Spheres::new(listed(crowd.is_some()));
+        let is_other = |s: &Surface| {
+            let is_crowded = crowd.is_some() && Crowd::takes(s);
+            s.moves() || matches!(s.shape, Shape::Triangle(_) | Shape::Disk(_)) && !is_crowded
+        };
         let others = (0u32..).zip(&surfaces).filter(|(_, s)| is_other(s)).map(|(id, _)| id).collect();
         let moves = surfaces.iter().any(Surface::moves);
-        Scene { surfaces, rectangles, spheres, others, moves, lights, sensor }
+        Scene { surfaces, rectangles, spheres, others, crowd, moves, lights, sensor }
     }
 
     /// Draws the start of a path that measures pixel `(x, y)`, from the top left.
@@ -142,6 +161,9 @@ impl Scene {
         let (t_sphere, sphere) = self.spheres.nearest(ray);
         if t_sphere < t {
             (t, id) = (t_sphere, sphere);
+        }
+        if let Some(crowd) = &self.crowd {
+            (t, id) = crowd.nearer(ray, (t, id));
         }
         for &other in self.others.iter().filter(|&&other| other != ray.from) {
             let candidate = self.surfaces[other as usize].intersect_flat(ray, time);
@@ -167,7 +189,10 @@ impl Scene {
         let blocks = |&other: &u32| {
             other != ray.from && other != to && self.surfaces[other as usize].intersect_flat(ray, time) < 1.0
         };
-        !self.rectangles.blocks(ray, to) && !self.spheres.blocks(ray, to) && !self.others.iter().any(blocks)
+        !self.rectangles.blocks(ray, to)
+            && !self.spheres.blocks(ray, to)
+            && !self.crowd.as_ref().is_some_and(|crowd| crowd.blocks(ray, to))
+            && !self.others.iter().any(blocks)
     }
 
     /// A point on an emitter as seen from `p` at `time`. `u` picks the light, `v` the point.

@@ -6,13 +6,20 @@
 use super::geometry::SpherePatch;
 use super::{Ray, Shape, Surface};
 use glam::DVec3;
+use std::collections::HashMap;
+
+/// A sphere without its bands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    pub center: DVec3,
+    pub radius: f64,
+}
 
 /// The bands of one sphere.
 #[derive(Clone, Debug)]
-struct Sphere {
-    center: DVec3,
-    radius: f64,
-    bands: Vec<(SpherePatch, u32)>,
+pub(super) struct Sphere {
+    pub ball: Ball,
+    pub bands: Vec<(SpherePatch, u32)>,
 }
 
 /// All spheres of a scene.
@@ -29,18 +36,23 @@ impl Spheres {
     /// Collects the spheres among `surfaces`.
     pub fn new(surfaces: &[Surface]) -> Self {
         let mut all = Spheres { spheres: Vec::new(), sphere_of: vec![ABSENT; surfaces.len()] };
+        let mut found = HashMap::new();
         for (id, surface) in surfaces.iter().enumerate() {
             let Shape::Sphere(patch) = surface.shape else { continue };
-            let same = |s: &Sphere| s.center == patch.center && s.radius == patch.radius;
-            let sphere = all.spheres.iter().position(same).unwrap_or_else(|| {
-                let (center, radius) = (patch.center, patch.radius);
-                all.spheres.push(Sphere { center, radius, bands: Vec::new() });
+            let ball = Ball { center: patch.center, radius: patch.radius };
+            let sphere = *found.entry(ball.key()).or_insert_with(|| {
+                all.spheres.push(Sphere { ball, bands: Vec::new() });
                 all.spheres.len() - 1
             });
             all.spheres[sphere].bands.push((patch, id as u32));
             all.sphere_of[id] = sphere as u32;
         }
         all
+    }
+
+    /// The spheres in the order of their first bands.
+    pub(super) fn all(&self) -> &[Sphere] {
+        &self.spheres
     }
 
     /// Distance and number of the nearest band along a ray of unit direction; infinity if there is none.
@@ -56,15 +68,7 @@ impl Spheres {
         let from = self.sphere_of(ray.from);
         let mut best = (f64::INFINITY, 0);
         for (i, sphere) in self.spheres.iter().enumerate() {
-            let Some(roots) = sphere.roots(ray, 1.0, from == i as u32) else { continue };
-            for t in roots {
-                if t > 0.0
-                    && t < best.0
-                    && let Some(id) = sphere.band_at(ray.o + t * ray.d)
-                {
-                    best = (t, id);
-                }
-            }
+            sphere.ball.nearer(ray, from == i as u32, &mut best, |p| sphere.band_at(p));
         }
         best
     }
@@ -74,27 +78,68 @@ impl Spheres {
     pub fn blocks(&self, ray: &Ray, to: u32) -> bool {
         let (from, to) = (self.sphere_of(ray.from), self.sphere_of(to));
         let a = ray.d.length_squared();
-        let inside =
-            |sphere: &Sphere, t: f64| t > 0.0 && t < 1.0 && sphere.band_at(ray.o + t * ray.d).is_some();
         self.spheres.iter().enumerate().any(|(i, sphere)| {
-            match (from == i as u32, to == i as u32) {
-                (true, true) => false, // a chord meets its sphere at its ends only
-                // one root is 1, and the product of the roots is c/a: the other root is c/a
-                (false, true) => inside(sphere, sphere.c(ray) / a),
-                (on, false) => {
-                    sphere.roots(ray, a, on).is_some_and(|roots| roots.iter().any(|&t| inside(sphere, t)))
-                }
-            }
+            let ends = (from == i as u32, to == i as u32);
+            sphere.ball.blocks(ray, a, ends, |p| sphere.band_at(p).is_some())
         })
     }
 
+    /// The sphere that a surface is a band of; a number that no sphere has for anything else.
     #[inline]
-    fn sphere_of(&self, surface: u32) -> u32 {
+    pub(super) fn sphere_of(&self, surface: u32) -> u32 {
         self.sphere_of.get(surface as usize).copied().unwrap_or(ABSENT - 1)
     }
 }
 
 impl Sphere {
+    /// The band that a point of the sphere belongs to, if there is one there. Bands are half-open, so that neighbours
+    /// share no point and leave no gap; a pole belongs to its band.
+    #[inline]
+    pub fn band_at(&self, p: DVec3) -> Option<u32> {
+        let Ball { center, radius } = self.ball;
+        let contains = |b: &SpherePatch| {
+            let z = (p - center).dot(b.axis);
+            (b.low <= -1.0 || z >= b.low * radius) && (b.high >= 1.0 || z < b.high * radius)
+        };
+        self.bands.iter().find(|(band, _)| contains(band)).map(|&(_, id)| id)
+    }
+}
+
+impl Ball {
+    /// Puts what the ray meets of this sphere in the place of `best`, distance and number, if it is nearer. `on` says
+    /// that the ray starts on the sphere; `band_at` tells which band a point of it belongs to.
+    #[inline]
+    pub fn nearer(&self, ray: &Ray, on: bool, best: &mut (f64, u32), band_at: impl Fn(DVec3) -> Option<u32>) {
+        let Some(roots) = self.roots(ray, 1.0, on) else { return };
+        for t in roots {
+            if t > 0.0
+                && t < best.0
+                && let Some(id) = band_at(ray.o + t * ray.d)
+            {
+                *best = (t, id);
+            }
+        }
+    }
+
+    /// Whether the sphere crosses the open segment; `a` = |d|², `on` and `to` say that its ends lie on the sphere, and
+    /// `covers` whether there is a band at a point.
+    #[inline]
+    pub fn blocks(&self, ray: &Ray, a: f64, (on, to): (bool, bool), covers: impl Fn(DVec3) -> bool) -> bool {
+        let inside = |t: f64| t > 0.0 && t < 1.0 && covers(ray.o + t * ray.d);
+        match (on, to) {
+            (true, true) => false, // a chord meets its sphere at its ends only
+            // one root is 1, and the product of the roots is c/a: the other root is c/a
+            (false, true) => inside(self.c(ray) / a),
+            (on, false) => self.roots(ray, a, on).is_some_and(|roots| roots.iter().any(|&t| inside(t))),
+        }
+    }
+
+    /// The same for equal spheres only; coordinates of either zero are equal.
+    fn key(&self) -> [u64; 4] {
+        let DVec3 { x, y, z } = self.center;
+        [x, y, z, self.radius].map(|v| (v + 0.0).to_bits())
+    }
+
     /// |o - center|² - radius²
     #[inline]
     fn c(&self, ray: &Ray) -> f64 {
@@ -115,16 +160,5 @@ impl Sphere {
         }
         let far = -(half_b + discriminant.sqrt().copysign(half_b));
         Some([far / a, c / far])
-    }
-
-    /// The band that a point of the sphere belongs to, if there is one there. Bands are half-open, so that neighbours
-    /// share no point and leave no gap; a pole belongs to its band.
-    #[inline]
-    fn band_at(&self, p: DVec3) -> Option<u32> {
-        let contains = |b: &SpherePatch| {
-            let z = (p - self.center).dot(b.axis);
-            (b.low <= -1.0 || z >= b.low * self.radius) && (b.high >= 1.0 || z < b.high * self.radius)
-        };
-        self.bands.iter().find(|(band, _)| contains(band)).map(|&(_, id)| id)
     }
 }

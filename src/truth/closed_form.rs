@@ -81,6 +81,7 @@ impl ClosedForm {
             SceneKind::CornellBox { .. }
             | SceneKind::CornellEmpty { .. }
             | SceneKind::CornellFlush { .. }
+            | SceneKind::ManySpheres { .. }
             | SceneKind::Lecture(_)
             | SceneKind::Custom { .. } => return None,
         };

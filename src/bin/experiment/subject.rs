@@ -7,7 +7,8 @@ use furnace::estimator::{
     Rule, Technique,
 };
 use furnace::experiment::spec::{
-    CausticSpec, DofSpec, FurnaceSpec, ImageSpec, MotionSpec, SceneSpec, SphereSpec, WideImageSpec,
+    CausticSpec, DofSpec, FurnaceSpec, ImageSpec, ManySpheresSpec, MotionSpec, SceneSpec, SphereSpec,
+    WideImageSpec,
 };
 use furnace::experiment::{Error, choices, plan};
 use furnace::scene::library::SceneKind;
@@ -38,13 +39,14 @@ fn scene_of_file(file: &str, label: &str, options: &Options) -> Result<SceneKind
 }
 
 /// All but those of the gallery.
-const NAMES: [&str; 15] = [
+const NAMES: [&str; 16] = [
     "cornell_box",
     "cornell_empty",
     "cornell_flush",
     "furnace",
     "furnace_box",
     "integrating_sphere",
+    "many_spheres",
     "caustic_glass",
     "caustic_glass_point",
     "caustic_mirror",
@@ -74,7 +76,7 @@ pub fn named(name: &str, details: Details) -> Result<SceneKind, Error> {
         true => Err(Error::Refused(format!("{name} has no {option}"))),
         false => Ok(()),
     };
-    let kind = match (lecture(name, resolution), name) {
+    let kind = match (image(name, resolution), name) {
         (Some(spec), _) => usual(&spec)?,
         (None, "cornell_box" | "cornell") => SceneKind::CornellBox { resolution: resolution.unwrap_or(32) },
         (None, "cornell_empty") => SceneKind::CornellEmpty { resolution: resolution.unwrap_or(32) },
@@ -100,29 +102,33 @@ pub fn named(name: &str, details: Details) -> Result<SceneKind, Error> {
 }
 
 fn is_image(name: &str) -> bool {
-    matches!(name, "cornell_box" | "cornell" | "cornell_empty") || lecture(name, None).is_some()
+    matches!(name, "cornell_box" | "cornell" | "cornell_empty") || image(name, None).is_some()
 }
 
-/// A scene of lectures with its usual parameters.
-fn lecture(name: &str, resolution: Option<u32>) -> Option<SceneSpec> {
-    let image = || resolution.map_or_else(ImageSpec::default, |resolution| ImageSpec { resolution });
+/// A scene that is looked at by a camera, with its usual parameters.
+fn image(name: &str, resolution: Option<u32>) -> Option<SceneSpec> {
+    let plain = || resolution.map_or_else(ImageSpec::default, |resolution| ImageSpec { resolution });
     let caustic = |point| {
         let usual = CausticSpec::default();
         CausticSpec { point, resolution: resolution.unwrap_or(usual.resolution), ..usual }
     };
     Some(match name {
+        "many_spheres" => SceneSpec::ManySpheres(ManySpheresSpec {
+            resolution: plain().resolution,
+            ..ManySpheresSpec::default()
+        }),
         "caustic_glass" => SceneSpec::CausticGlass(caustic(false)),
         "caustic_glass_point" => SceneSpec::CausticGlass(caustic(true)),
         "caustic_mirror" => SceneSpec::CausticMirror(caustic(false)),
         "caustic_mirror_point" => SceneSpec::CausticMirror(caustic(true)),
-        "indirect" => SceneSpec::Indirect(image()),
+        "indirect" => SceneSpec::Indirect(plain()),
         "smallpt" => {
             let usual = WideImageSpec::default().resolution;
             SceneSpec::Smallpt(WideImageSpec { resolution: resolution.unwrap_or(usual) })
         }
-        "veach_mis" => SceneSpec::VeachMis(image()),
-        "dof" => SceneSpec::Dof(DofSpec { resolution: image().resolution, ..DofSpec::default() }),
-        "motion" => SceneSpec::Motion(MotionSpec { resolution: image().resolution, ..MotionSpec::default() }),
+        "veach_mis" => SceneSpec::VeachMis(plain()),
+        "dof" => SceneSpec::Dof(DofSpec { resolution: plain().resolution, ..DofSpec::default() }),
+        "motion" => SceneSpec::Motion(MotionSpec { resolution: plain().resolution, ..MotionSpec::default() }),
         _ => return None,
     })
 }

@@ -4,8 +4,8 @@ use super::lecture::{self, caustic, dof, motion};
 use super::{Choice, points};
 use crate::experiment::input::Sweep;
 use crate::experiment::spec::{
-    BsdfSpec, FlushSpec, FurnaceSpec, LooksAt, PrimitiveSpec, PrimitivesSpec, SceneSpec, SensorSpec,
-    ShapeSpec, SkySpec, SphereSpec,
+    BsdfSpec, FlushSpec, FurnaceSpec, LooksAt, ManySpheresSpec, PrimitiveSpec, PrimitivesSpec, SceneSpec,
+    SensorSpec, ShapeSpec, SkySpec, SphereSpec,
 };
 use crate::scene::camera::Camera;
 use crate::scene::geometry::{Disk, SpherePatch};
@@ -44,6 +44,7 @@ pub fn scenes(spec: &SceneSpec) -> Result<Vec<Choice<SceneKind>>, String> {
             };
             Ok(points("tile", tile).map(one).collect())
         }
+        SceneSpec::ManySpheres(m) => Ok(many_spheres(m)),
         SceneSpec::CausticGlass(c) => {
             caustic(["caustic_glass", "caustic_glass_point"], c, |source, resolution| Lecture::CausticGlass {
                 source,
@@ -77,6 +78,18 @@ fn bounded(albedo: Rgb, emission: Rgb) -> Result<(), String> {
             .to_owned());
     }
     Ok(())
+}
+
+/// So many balls, unless a file says how many.
+const USUAL_COUNT: u32 = 1000;
+
+fn many_spheres(spec: &ManySpheresSpec) -> Vec<Choice<SceneKind>> {
+    let scene = |count| SceneKind::ManySpheres { count, resolution: spec.resolution };
+    let one = |p: (&'static str, f64, bool)| Choice::new("many_spheres", &[], vec![p], scene(p.1 as u32));
+    match &spec.count {
+        None => vec![Choice::new("many_spheres", &[], Vec::new(), scene(USUAL_COUNT))],
+        Some(counts) => points("count", counts).map(one).collect(),
+    }
 }
 
 fn integrating_sphere(s: &SphereSpec, light: (&'static str, f64, bool)) -> Result<Choice<SceneKind>, String> {

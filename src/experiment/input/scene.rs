@@ -2,6 +2,7 @@
 
 use super::{PerChannel, Sweep, check, swept};
 use crate::scene::Rgb;
+use crate::scene::many_spheres::COUNTS;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
@@ -124,4 +125,11 @@ pub fn apertures<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Sweep>, D::Er
 /// How far something goes, to sweep over.
 pub fn travels<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Sweep>, D::Error> {
     swept(d, "the board goes between 0 and 1 to the right", |v| (0.0..=1.0).contains(&v)).map(Some)
+}
+
+/// Numbers of balls, to sweep over.
+pub fn ball_counts<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Sweep>, D::Error> {
+    let (least, most) = (*COUNTS.start(), *COUNTS.end());
+    let wanted = format!("a number of balls is a whole number from {least} to {most}");
+    swept(d, &wanted, |v| v.fract() == 0.0 && (f64::from(least)..=f64::from(most)).contains(&v)).map(Some)
 }

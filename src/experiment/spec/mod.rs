@@ -13,7 +13,7 @@ pub use lecture::{CausticSpec, DofSpec, ImageSpec, MotionSpec, WideImageSpec};
 pub use null::NullSpec;
 pub use photons::{LightTracingSpec, PhotonMapSpec, ProgressiveSpec};
 pub use primitives::{BsdfSpec, PointSpec, PrimitiveSpec, PrimitivesSpec, SensorSpec, ShapeSpec, SkySpec};
-pub use scene::{FlushSpec, FurnaceSpec, LooksAt, SceneSpec, SphereSpec};
+pub use scene::{FlushSpec, FurnaceSpec, LooksAt, ManySpheresSpec, SceneSpec, SphereSpec};
 pub use walk::{EstimatorSpec, FaultNames, RouletteSpec, TechniqueSpec};
 
 use super::core::Core;

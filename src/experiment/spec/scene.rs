@@ -22,6 +22,8 @@ pub enum SceneSpec {
     CornellEmpty(CornellSpec),
     /// See [`crate::scene::library::SceneKind::CornellFlush`].
     CornellFlush(FlushSpec),
+    /// See [`crate::scene::library::SceneKind::ManySpheres`].
+    ManySpheres(ManySpheresSpec),
     /// See [`crate::scene::lecture::Lecture::CausticGlass`].
     CausticGlass(CausticSpec),
     /// See [`crate::scene::lecture::Lecture::CausticMirror`].
@@ -160,5 +162,23 @@ pub struct FlushSpec {
 impl Default for FlushSpec {
     fn default() -> Self {
         FlushSpec { tile: Sweep(vec![1.0]), blocks: false }
+    }
+}
+
+/// A room full of balls.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ManySpheresSpec {
+    /// How many.
+    #[serde(deserialize_with = "input::ball_counts")]
+    pub count: Option<Sweep>,
+    /// Pixels along each edge of the image.
+    #[serde(deserialize_with = "input::resolution")]
+    pub resolution: u32,
+}
+
+impl Default for ManySpheresSpec {
+    fn default() -> Self {
+        ManySpheresSpec { count: None, resolution: 128 }
     }
 }

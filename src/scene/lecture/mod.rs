@@ -6,7 +6,7 @@ mod caustic_mirror;
 mod dof;
 mod indirect;
 mod motion;
-mod props;
+pub(super) mod props;
 mod smallpt;
 mod veach_mis;
 
