@@ -12,6 +12,8 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 
+import drjit as dr
+import mitsuba as mi
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "references"))
@@ -29,27 +31,53 @@ def prepare(variant, file):
     """One thread, the scene loaded, and its code compiled. What LLVM says as it gives up is long, and left out."""
     global scene
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    import drjit
-    import mitsuba
-
-    mitsuba.set_variant(variant)
-    mitsuba.set_log_level(mitsuba.LogLevel.Error)
-    drjit.set_thread_count(1)
-    scene = mitsuba.load_file(file)
+    mi.set_variant(variant)
+    mi.set_log_level(mi.LogLevel.Error)
+    dr.set_thread_count(1)
+    scene = mi.load_file(file)
     mitsuba_render(16, 1 << 20)
 
 
 def mitsuba_render(spp, seed):
     """CPU seconds of the rendering alone, and the image."""
-    import drjit
-    import mitsuba
-
     before = time.process_time()
-    image = mitsuba.render(scene, spp=spp, seed=seed)
-    drjit.eval(image)
-    drjit.sync_thread()
+    image = mi.render(scene, spp=spp, seed=seed)
+    dr.eval(image)
+    dr.sync_thread()
     seconds = time.process_time() - before
     return seconds, np.array(image.array, dtype=np.float64).reshape(SIZE, SIZE, 3)
+
+
+def counted_rays(spp):
+    """Rays a path of Mitsuba's `path`: nearest hits and shadow rays. It tells neither, so its walk is taken again here."""
+    class Count(mi.SamplingIntegrator):
+        @dr.syntax
+        def sample(self, scene, sampler, ray, medium=None, active=True):
+            ray, active = mi.Ray3f(ray), mi.Bool(active)
+            throughput, depth = mi.Spectrum(1), mi.UInt32(0)
+            nearest, shadow = mi.Float(0), mi.Float(0)
+            while active:
+                si = scene.ray_intersect(ray, mi.RayFlags.All, depth == 0, active)
+                nearest += 1
+                active &= si.is_valid()
+                ds, _ = scene.sample_emitter_direction(si, sampler.next_2d(active), False, active)
+                shadow += dr.select(active & (ds.pdf != 0), 1, 0)
+                scattered, weight = si.bsdf(ray).sample(
+                    mi.BSDFContext(), si, sampler.next_1d(active), sampler.next_2d(active), active
+                )
+                ray = si.spawn_ray(si.to_world(scattered.wo))
+                throughput *= weight
+                depth += 1
+                largest = dr.max(throughput)
+                q = dr.minimum(largest, 0.95)
+                plays = depth >= 5
+                goes_on = sampler.next_1d(active) < q
+                throughput[plays] *= dr.rcp(q)
+                active &= (~plays | goes_on) & (largest != 0)
+            return mi.Color3f(nearest, shadow, 0), mi.Bool(True), []
+
+    image = mi.render(scene, spp=spp, integrator=Count(mi.Properties()))
+    return np.array(image.array, dtype=np.float64).reshape(-1, 3).mean(axis=0)[:2]
 
 
 class Mitsuba:
@@ -215,6 +243,9 @@ def main():
     for run in everyone:
         run.finish()
     table(everyone)
+    if llvm:
+        nearest, shadow = llvm.pool.submit(counted_rays, 16).result()
+        print(f"{'mitsuba':24} {nearest + shadow:.2f} rays a path: {nearest:.2f} for the nearest hit, {shadow:.2f} shadow rays")
     for run in ours:
         print(f"{run.renderer.name:24} {run.renderer.rays:.2f} rays a path, shadow rays among them")
     ratios(ours, theirs)
