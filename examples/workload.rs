@@ -11,7 +11,7 @@ use furnace::estimator::{
 };
 use furnace::experiment::core::fast_block_of;
 use furnace::experiment::run::block_of;
-use furnace::fast::{Fast, Level, instruction_set};
+use furnace::fast::{Fast, Level, Particles, instruction_set};
 use furnace::sampling::Address;
 use furnace::scene::library::{SceneKind, View};
 use furnace::scene::{Directions, LightSampling, Rgb, Scene};
@@ -71,6 +71,22 @@ fn emit(scene: &Scene, map: &PhotonMap, address: &Address, realizations: std::op
     (count * map.photons, tally.rays)
 }
 
+/// The same sixteen at a time.
+fn emit_fast(
+    particles: &Particles<'_>,
+    estimator: &Estimator,
+    address: &Address,
+    realizations: std::ops::Range<u64>,
+) -> (u64, u64) {
+    let Estimator::PhotonMap(map) = estimator else { unreachable!("the workload of photons") };
+    let mut tally = Tally::default();
+    let count = realizations.end - realizations.start;
+    for realization in realizations {
+        black_box(particles.map(map, realization, &address.repetition(realization), &mut tally));
+    }
+    (count * map.photons, tally.rays)
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [name, core, realizations, rest @ ..] = &args[..] else {
@@ -96,10 +112,18 @@ fn main() -> Result<(), Box<dyn Error>> {
             block_of(&scene, &estimator, &|number, pixel| address.stream(number, pixel), &[], realizations)
         }
         (_, "fast" | "fast_avx2") => {
-            let mut fast = Fast::of(&scene, &estimator)?;
-            if core == "fast_avx2" {
-                fast = fast.on(Level::new().as_avx2().map(Level::Avx2).ok_or("no AVX2 here")?);
-            }
+            let level = match core.as_str() {
+                "fast_avx2" => Level::new().as_avx2().map(Level::Avx2).ok_or("no AVX2 here")?,
+                _ => Level::new(),
+            };
+            let fast = match Fast::of(&scene, &estimator)? {
+                Fast::Paths(paths) => paths.on(level),
+                Fast::Particles(particles) => {
+                    let (paths, rays) = emit_fast(&particles.on(level), &estimator, &address, realizations);
+                    println!("{:.6} {paths} {rays} {}", cpu_seconds() - before, instruction_set());
+                    return Ok(());
+                }
+            };
             let draw = |number, pixel| address.narrow_stream(number, pixel);
             fast_block_of(&scene, &fast, &draw, &[], realizations)
         }

@@ -222,7 +222,7 @@ impl<'a> Ctx<'a> {
     }
 
     /// Traces a shadow ray from `x` to the point `x.p + to_light` on a surface: whether nothing stands between.
-    #[inline]
+    #[inline(always)]
     pub fn visible(&mut self, x: &Hit<'_>, to_light: DVec3, surface: u32) -> bool {
         self.tally.rays += 1;
         self.scene.visible(&x.spawn(to_light), self.time, surface)

@@ -73,7 +73,6 @@ impl Rule {
     /// Expected number of continuations, given throughput and albedo by channel: of one path, or of several side by side.
     #[inline(always)]
     pub fn q<N: Number>(self, beta: [N; 3], albedo: [N; 3]) -> N {
-        let largest = |[r, g, b]: [N; 3]| r.max(g.max(b));
         match self {
             Rule::None => beta[0].like(1.0),
             Rule::Constant { q } => beta[0].like(q),
@@ -83,6 +82,11 @@ impl Rule {
             }
         }
     }
+}
+
+#[inline(always)]
+fn largest<N: Number>([r, g, b]: [N; 3]) -> N {
+    r.max(g.max(b))
 }
 
 /// A number of one path, or of several side by side.

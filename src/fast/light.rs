@@ -4,8 +4,9 @@ use super::rays::Rays;
 use super::stage::{Meeting, Stage};
 use super::stream::Streams;
 use super::vector::{F, M, U, V3, lanes, narrow};
-use crate::scene::{LightSampling, Points, Shape, geometry::Rectangle};
+use crate::scene::{LightSample, LightSampling, Points, Shape, geometry::Rectangle};
 use fearless_simd::{Simd, prelude::*};
+use glam::DVec3;
 use std::f32::consts::FRAC_1_PI;
 
 /// The only emitter of a scene, a rectangle.
@@ -57,9 +58,9 @@ impl Lamp {
     pub fn sample<S: Simd>(&self, x: &Meeting<S>, alive: M<S>, streams: &mut Streams<S>) -> Ways<S> {
         let simd = alive.token();
         let (u, v) = streams.u2(alive);
-        let vector = |v| V3::splat(simd, v);
-        let across = vector(self.half_u) * (u * 2.0 - 1.0) + vector(self.half_v) * (v * 2.0 - 1.0);
-        let to_light = vector(self.center) + across - x.p;
+        let across =
+            V3::splat(simd, self.half_u) * (u * 2.0 - 1.0) + V3::splat(simd, self.half_v) * (v * 2.0 - 1.0);
+        let to_light = V3::splat(simd, self.center) + across - x.p;
         let squared = to_light.dot(to_light);
         let inverse = F::splat(simd, 1.0) / squared.sqrt();
         let cos_light = -to_light.along(&self.n) * inverse;
@@ -69,7 +70,7 @@ impl Lamp {
         let open = alive & elsewhere & cos_light.simd_gt(0.0) & cos.simd_gt(0.0);
         let area_pdf = F::splat(simd, 1.0 / self.area);
         let pdf = area_pdf * squared / cos_light;
-        let radiance = x.albedo.times(vector(self.le)) * (cos * FRAC_1_PI / pdf);
+        let radiance = x.albedo.times(V3::splat(simd, self.le)) * (cos * FRAC_1_PI / pdf);
         Ways { open, to_light, to: U::splat(simd, self.id), pdf, radiance }
     }
 }
@@ -94,7 +95,7 @@ pub fn sample<S: Simd>(
     for lane in lanes(alive) {
         let (p, n) = (x.p.of(lane), x.n.of(lane));
         let point = (f64::from(u[lane]), f64::from(v[lane]));
-        let light = stage.scene.sample_light(lights, (p, 0.0), f64::from(pick[lane]), point);
+        let light = sample_one(stage, lights, p, f64::from(pick[lane]), point);
         let light = light.map(|light| (light, n.dot(light.to_light / light.distance)));
         let itself = |surface| surface == x.id[lane] && stage.is_flat(surface);
         let Some((light, cos)) = light.filter(|(light, cos)| *cos > 0.0 && !itself(light.surface)) else {
@@ -108,6 +109,18 @@ pub fn sample<S: Simd>(
         ways.radiance.set(lane, f * light.le * (cos * light.weight));
     }
     ways
+}
+
+/// Once for all instruction sets: it is long.
+#[inline(never)]
+fn sample_one(
+    stage: &Stage<'_>,
+    lights: LightSampling,
+    p: DVec3,
+    pick: f64,
+    point: (f64, f64),
+) -> Option<LightSample> {
+    stage.scene.sample_light(lights, (p, 0.0), pick, point)
 }
 
 impl<S: Simd> Ways<S> {

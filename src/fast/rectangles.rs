@@ -118,10 +118,14 @@ impl Group {
     }
 
     #[inline(always)]
+    fn coordinates<S: Simd>(&self, v: V3<S>) -> [F<S>; 3] {
+        [v.along(&self.axes[0]), v.along(&self.axes[1]), v.along(&self.axes[2])]
+    }
+
+    #[inline(always)]
     fn turn<S: Simd>(&self, rays: &Rays<S>) -> Turned<S> {
         let one = F::splat(rays.from.token(), 1.0);
-        let turn = |v: V3<S>| [v.along(&self.axes[0]), v.along(&self.axes[1]), v.along(&self.axes[2])];
-        let (o, d) = (turn(rays.o), turn(rays.d));
+        let (o, d) = (self.coordinates(rays.o), self.coordinates(rays.d));
         Turned { o, d, inverse: [one / d[0], one / d[1], one / d[2]] }
     }
 }
@@ -131,11 +135,12 @@ impl Flat {
     #[inline(always)]
     fn crossed<S: Simd>(&self, normal: usize, ray: &Turned<S>) -> (F<S>, M<S>) {
         let t = (F::splat(ray.o[0].token(), self.height) - ray.o[normal]) * ray.inverse[normal];
-        let within = |side: usize| {
-            let axis = (normal + 1 + side) % 3;
-            let off = ray.o[axis] + ray.d[axis] * t - self.middle[side];
-            off.abs().simd_le(self.half[side])
-        };
-        (t, within(0) & within(1))
+        (t, self.within(0, (normal + 1) % 3, ray, t) & self.within(1, (normal + 2) % 3, ray, t))
+    }
+
+    #[inline(always)]
+    fn within<S: Simd>(&self, side: usize, axis: usize, ray: &Turned<S>, t: F<S>) -> M<S> {
+        let off = ray.o[axis] + ray.d[axis] * t - self.middle[side];
+        off.abs().simd_le(self.half[side])
     }
 }

@@ -107,18 +107,13 @@ impl<'a> Stage<'a> {
             radius[lane] = skin.radius;
             emit |= u64::from(skin.emits) << lane;
         }
-        let vector = |a: [[f32; WIDTH]; 3]| V3 {
-            x: F::simd_from(simd, a[0]),
-            y: F::simd_from(simd, a[1]),
-            z: F::simd_from(simd, a[2]),
-        };
-        let (mut p, mut n) = (rays.o + rays.d * met.t, vector(n));
+        let (mut p, mut n) = (rays.o + rays.d * met.t, V3::gathered(simd, &n));
         if self.has_spheres {
             (p, n) = on_spheres(p, n, F::simd_from(simd, radius));
         }
         let seen = met.t.simd_lt(f32::INFINITY) & n.dot(rays.d).simd_lt(0.0);
         let emit = seen & M::from_bitmask(simd, emit);
-        Meeting { seen, p, n, albedo: vector(albedo), id: met.id, emit }
+        Meeting { seen, p, n, albedo: V3::gathered(simd, &albedo), id: met.id, emit }
     }
 
     /// Where nothing stands between `rays.o` and `rays.o + rays.d` on the surfaces `to`.

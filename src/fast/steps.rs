@@ -44,7 +44,6 @@ impl Steps<'_> {
     pub fn roulette<S: Simd>(&self, x: &Meeting<S>, paths: &mut Paths<S>) {
         let roulette = &self.roulette;
         let (beta, albedo) = (paths.beta.components(), x.albedo.components());
-        let largest = |[r, g, b]: [F<S>; 3]| r.max(g).max(b);
         let one = F::splat(x.id.token(), 1.0);
         let goes = paths.alive & largest(beta).simd_gt(0.0) & largest(albedo).simd_gt(0.0);
         let certain = paths.bounce.simd_le(roulette.from);
@@ -71,4 +70,9 @@ impl Steps<'_> {
         paths.pdf = pdf;
         (paths.rays.o, paths.rays.d, paths.rays.from) = (x.p, wi, x.id);
     }
+}
+
+#[inline(always)]
+fn largest<S: Simd>([r, g, b]: [F<S>; 3]) -> F<S> {
+    r.max(g).max(b)
 }

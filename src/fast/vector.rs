@@ -39,6 +39,12 @@ impl<S: Simd> V3<S> {
         V3 { x: F::splat(simd, v[0]), y: F::splat(simd, v[1]), z: F::splat(simd, v[2]) }
     }
 
+    /// From the components of each path.
+    #[inline(always)]
+    pub fn gathered(simd: S, [x, y, z]: &[[f32; WIDTH]; 3]) -> Self {
+        V3 { x: F::simd_from(simd, *x), y: F::simd_from(simd, *y), z: F::simd_from(simd, *z) }
+    }
+
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> F<S> {

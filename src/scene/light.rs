@@ -162,7 +162,7 @@ impl Lights {
     }
 
     /// See [`super::Scene::sample_light`].
-    #[inline]
+    #[inline(always)]
     pub fn sample(
         &self,
         surfaces: &[Surface],
@@ -241,7 +241,7 @@ impl Lights {
 /// A point, the front's normal there, and the solid angle [sr] if the point is uniform over it.
 type Point = (DVec3, DVec3, Option<f64>);
 
-#[inline]
+#[inline(always)]
 fn of_surface(
     surface: &Surface,
     id: u32,

@@ -76,7 +76,7 @@ impl Hit<'_> {
     }
 
     /// Fraction of the light that goes on towards `wo`, channel by channel.
-    #[inline]
+    #[inline(always)]
     pub fn albedo(&self) -> Rgb {
         self.material.bsdf.albedo(self.frame.n.dot(self.wo).abs())
     }
@@ -184,7 +184,7 @@ impl Scene {
     }
 
     /// Whether nothing stands between the point `ray.o` on surface `ray.from` and `ray.o + ray.d` on surface `to`.
-    #[inline]
+    #[inline(always)]
     pub fn visible(&self, ray: &Ray, time: f64, to: u32) -> bool {
         let blocks = |&other: &u32| {
             other != ray.from && other != to && self.surfaces[other as usize].intersect_flat(ray, time) < 1.0
@@ -197,7 +197,7 @@ impl Scene {
 
     /// A point on an emitter as seen from `p` at `time`. `u` picks the light, `v` the point.
     /// `None` where the sampled point cannot send light to `p` (visibility aside).
-    #[inline]
+    #[inline(always)]
     pub fn sample_light(
         &self,
         how: LightSampling,
