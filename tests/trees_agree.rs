@@ -12,6 +12,9 @@ use glam::DVec3;
 const CLEAR: Material = Material { bsdf: Bsdf::Dielectric { ior: 1.5 }, le: Rgb::ZERO };
 const SENSOR: Sensor = Sensor::Probe { origin: DVec3::ZERO, direction: DVec3::Z };
 
+/// When rays are traced.
+const TIME: f64 = 0.7;
+
 /// Where a scene is, and how large.
 #[derive(Clone, Copy, Debug)]
 struct Place {
@@ -89,7 +92,22 @@ fn mixed(name: &str, at: Place, counts: [usize; 4]) -> Scene {
     // in an order without regard to kind
     let mut keyed: Vec<(f64, Shape)> = shapes.into_iter().map(|shape| (s.u1(), shape)).collect();
     keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Scene::new(keyed.into_iter().map(|(_, shape)| Surface::new(shape, CLEAR)).collect(), SENSOR)
+    // of a hundred materials; some of the flat ones move, and stay out of trees
+    let surface = |(i, (_, shape)): (usize, (f64, Shape))| {
+        let bsdf = Bsdf::Dielectric { ior: 1.0 + 0.01 * (i % 100) as f64 };
+        let moves = i % 20 == 0 && !matches!(shape, Shape::Sphere(_));
+        let velocity = if moves { at.scale * DVec3::new(0.3, 0.1, -0.2) } else { DVec3::ZERO };
+        Surface::moving(shape, Material { bsdf, le: Rgb::splat((i % 7) as f64) }, velocity)
+    };
+    Scene::new(keyed.into_iter().enumerate().map(surface).collect(), SENSOR)
+}
+
+/// What a ray meets, to the bit.
+fn found(scene: &Scene, ray: &Ray) -> Option<(u32, [[u64; 3]; 5], Material)> {
+    let hit = scene.intersect(ray, TIME)?;
+    let across = hit.frame.to_world(DVec3::X);
+    let numbers = [hit.p, hit.frame.n, across, hit.wo, hit.le];
+    Some((hit.surface, numbers.map(|v| v.to_array().map(f64::to_bits)), *hit.material))
 }
 
 /// The two scenes that have to agree.
@@ -109,13 +127,7 @@ impl Pair {
 
     #[track_caller]
     fn meet_alike(&mut self, ray: &Ray) {
-        let bits = |scene: &Scene| {
-            scene.intersect(ray, 0.0).map(|hit| {
-                let numbers = [hit.p, hit.frame.n, hit.wo];
-                (hit.surface, numbers.map(|v| v.to_array().map(f64::to_bits)))
-            })
-        };
-        let (tree, turn) = (bits(&self.tree), bits(&self.turn));
+        let (tree, turn) = (found(&self.tree, ray), found(&self.turn, ray));
         assert_eq!(tree, turn, "{ray:?}");
         self.asked += 1;
         self.met += usize::from(tree.is_some());
@@ -123,8 +135,8 @@ impl Pair {
 
     #[track_caller]
     fn hide_alike(&mut self, segment: &Ray, to: u32) {
-        let seen = self.turn.visible(segment, 0.0, to);
-        assert_eq!(self.tree.visible(segment, 0.0, to), seen, "{segment:?} to {to}");
+        let seen = self.turn.visible(segment, TIME, to);
+        assert_eq!(self.tree.visible(segment, TIME, to), seen, "{segment:?} to {to}");
         self.hidden += usize::from(!seen);
     }
 

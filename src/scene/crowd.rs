@@ -6,8 +6,10 @@
 use super::geometry::NOWHERE;
 use super::lanes;
 use super::spheres::{Ball, Spheres};
+use super::surface::on_sphere;
 use super::tree::Tree;
-use super::{Ray, Shape, Surface};
+use super::{Material, Ray, Shape, Surface};
+use crate::sampling::warp::Frame;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -26,13 +28,35 @@ pub(super) struct Crowd {
     planes: Vec<Plane>,
     flats: Vec<(Shape, u32)>,
     spheres: Spheres,
+    /// Of spheres, few of them more than once.
+    materials: Vec<Material>,
+}
+
+/// A sphere with all that there is to know of it where it is met: surfaces are large and lie far apart.
+#[derive(Clone, Copy, Debug)]
+struct Round {
+    ball: Ball,
+    /// Place among all spheres.
+    number: u32,
+    /// Its surface if that is all of it, or [`NOWHERE`]; then the rest holds for this surface.
+    whole: u32,
+    material: u32,
+    inward: bool,
+}
+
+/// What is met of a sphere of one surface.
+#[derive(Clone, Copy)]
+pub(super) struct Skin<'a> {
+    round: &'a Round,
+    /// What it is made of.
+    pub material: &'a Material,
 }
 
 /// A primitive; planes and flats by their places.
 #[derive(Clone, Copy, Debug)]
 enum Member {
-    /// A sphere and its number; its surface, if that is all of it.
-    Sphere { ball: Ball, number: u32, whole: Option<u32> },
+    /// A sphere.
+    Sphere(Round),
     /// A rectangle.
     Plane(u32),
     /// A triangle or a disk.
@@ -54,10 +78,11 @@ struct Plane {
 
 /// What is nearest so far. Among equals the lowest rank counts, which is the order of being asked without a tree:
 /// rectangles, spheres, all others; and the order within each of these.
-struct Nearest {
+struct Nearest<'a> {
     t: f64,
     id: u32,
     rank: (u8, u32),
+    round: Option<&'a Round>,
 }
 
 impl Crowd {
@@ -77,24 +102,25 @@ impl Crowd {
         let entrants: Vec<u32> = first_bands.chain(rectangles.iter().copied()).chain(flats).collect();
         let bounds = |id: &u32| surfaces[*id as usize].shape.bounds();
         let (tree, order) = Tree::new(&entrants.iter().map(bounds).collect::<Vec<_>>());
-        let mut crowd = Crowd { tree, members: Vec::new(), planes: Vec::new(), flats: Vec::new(), spheres };
+        let (members, planes, flats, materials) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut crowd = Crowd { tree, members, planes, flats, spheres, materials };
         for entrant in order {
             let id = entrants[entrant as usize];
-            let member = crowd.member(id, &surfaces[id as usize].shape, &rectangles);
+            let member = crowd.member(id, &surfaces[id as usize], &rectangles);
             crowd.members.push(member);
         }
         Some(crowd)
     }
 
     /// The primitive of surface `id`, stored behind all others of its kind; `rectangles` are those that take part.
-    fn member(&mut self, id: u32, shape: &Shape, rectangles: &[u32]) -> Member {
-        match shape {
-            Shape::Sphere(_) => {
+    fn member(&mut self, id: u32, surface: &Surface, rectangles: &[u32]) -> Member {
+        match &surface.shape {
+            Shape::Sphere(first) => {
                 let number = self.spheres.sphere_of(id);
-                let sphere = &self.spheres.all()[number as usize];
-                let (first, id) = sphere.bands[0];
-                let whole = (first.low <= -1.0 && first.high >= 1.0).then_some(id);
-                Member::Sphere { ball: sphere.ball, number, whole }
+                let whole = if first.low <= -1.0 && first.high >= 1.0 { id } else { NOWHERE };
+                let material = self.material(&surface.material);
+                let ball = self.spheres.all()[number as usize].ball;
+                Member::Sphere(Round { ball, number, whole, material, inward: first.inward })
             }
             Shape::Rectangle(r) => {
                 let (n, u, v) =
@@ -105,10 +131,20 @@ impl Crowd {
                 Member::Plane(self.planes.len() as u32 - 1)
             }
             Shape::Triangle(_) | Shape::Disk(_) => {
-                self.flats.push((*shape, id));
+                self.flats.push((surface.shape, id));
                 Member::Flat(self.flats.len() as u32 - 1)
             }
         }
+    }
+
+    /// Where the material is stored; one of those stored last, if it is among them.
+    fn material(&mut self, material: &Material) -> u32 {
+        let last = self.materials.iter().rev().take(64).position(|other| other == material);
+        let place = last.map_or(self.materials.len(), |back| self.materials.len() - 1 - back);
+        if place == self.materials.len() {
+            self.materials.push(*material);
+        }
+        place as u32
     }
 
     /// Whether rectangles at rest are among them.
@@ -121,78 +157,95 @@ impl Crowd {
         is_flat(surface)
     }
 
-    /// The nearer of `best`, distance and surface, and of what the ray meets first here.
-    #[inline]
-    pub fn nearer(&self, ray: &Ray, best: (f64, u32)) -> (f64, u32) {
+    /// The nearer of `best`, distance and surface, and of what the ray meets first here; with its skin, if it has one. A
+    /// call of its own, for scenes without a crowd to be met as fast as if there were none.
+    #[inline(never)]
+    pub fn nearer(&self, ray: &Ray, best: (f64, u32)) -> (f64, u32, Option<Skin<'_>>) {
         let from = self.spheres.sphere_of(ray.from);
-        let mut nearest = Nearest { t: best.0, id: best.1, rank: (0, 0) };
+        let mut nearest = Nearest { t: best.0, id: best.1, rank: (0, 0), round: None };
         self.tree.nearest(ray, best.0, |leaf| {
             for member in &self.members[leaf] {
                 self.meet(member, ray, from, &mut nearest);
             }
             nearest.t
         });
-        (nearest.t, nearest.id)
+        let whole = nearest.round.filter(|round| round.whole != NOWHERE);
+        let skin = whole.map(|round| Skin { round, material: &self.materials[round.material as usize] });
+        (nearest.t, nearest.id, skin)
     }
 
     #[inline]
-    fn meet(&self, member: &Member, ray: &Ray, from: u32, nearest: &mut Nearest) {
-        match *member {
-            Member::Sphere { ball, number, whole } => {
+    fn meet<'a>(&'a self, member: &'a Member, ray: &Ray, from: u32, nearest: &mut Nearest<'a>) {
+        match member {
+            Member::Sphere(round) => {
                 // up to and including the nearest distance so far
                 let mut met = (nearest.t.next_up(), NOWHERE);
-                ball.nearer(ray, from == number, &mut met, |p| {
-                    whole.or_else(|| self.spheres.all()[number as usize].band_at(p))
-                });
+                round.ball.nearer(ray, from == round.number, &mut met, |p| self.surface_at(round, p));
                 if met.1 != NOWHERE {
-                    nearest.offer(met.0, met.1, (1, number));
+                    nearest.offer(met.0, met.1, (1, round.number), Some(round));
                 }
             }
             Member::Plane(i) => {
-                let plane = &self.planes[i as usize];
+                let plane = &self.planes[*i as usize];
                 if plane.id != ray.from {
-                    nearest.offer(plane.distance(ray), plane.id, (0, plane.rank));
+                    nearest.offer(plane.distance(ray), plane.id, (0, plane.rank), None);
                 }
             }
             Member::Flat(i) => {
-                let (shape, id) = &self.flats[i as usize];
+                let (shape, id) = &self.flats[*i as usize];
                 if *id != ray.from {
-                    nearest.offer(shape.intersect_flat(ray), *id, (2, *id));
+                    nearest.offer(shape.intersect_flat(ray), *id, (2, *id), None);
                 }
             }
         }
     }
 
     /// Whether any of them but the surfaces at its ends crosses the segment.
-    #[inline]
+    #[inline(never)]
     pub fn blocks(&self, segment: &Ray, to: u32) -> bool {
         let ends = (self.spheres.sphere_of(segment.from), self.spheres.sphere_of(to));
         let a = segment.d.length_squared();
         let is_end = |id: u32| id == segment.from || id == to;
-        let blocks = |member: &Member| match *member {
-            Member::Sphere { ball, number, whole } => {
-                ball.blocks(segment, a, (ends.0 == number, ends.1 == number), |p| {
-                    whole.is_some() || self.spheres.all()[number as usize].band_at(p).is_some()
-                })
+        let blocks = |member: &Member| match member {
+            Member::Sphere(round) => {
+                let at_ends = (ends.0 == round.number, ends.1 == round.number);
+                round.ball.blocks(segment, a, at_ends, |p| self.surface_at(round, p).is_some())
             }
             Member::Plane(i) => {
-                let plane = &self.planes[i as usize];
+                let plane = &self.planes[*i as usize];
                 !is_end(plane.id) && plane.distance(segment) < 1.0
             }
             Member::Flat(i) => {
-                let (shape, id) = &self.flats[i as usize];
+                let (shape, id) = &self.flats[*i as usize];
                 !is_end(*id) && shape.intersect_flat(segment) < 1.0
             }
         };
         self.tree.any(segment, |leaf: Range<usize>| self.members[leaf].iter().any(blocks))
     }
+
+    /// The surface at a point of a sphere, if there is one.
+    #[inline]
+    fn surface_at(&self, round: &Round, p: DVec3) -> Option<u32> {
+        if round.whole != NOWHERE {
+            return Some(round.whole);
+        }
+        self.spheres.all()[round.number as usize].band_at(p)
+    }
 }
 
-impl Nearest {
+impl Skin<'_> {
+    /// See [`Surface::at`].
     #[inline]
-    fn offer(&mut self, t: f64, id: u32, rank: (u8, u32)) {
+    pub fn at(&self, p: DVec3) -> (DVec3, Frame) {
+        on_sphere(self.round.ball.center, self.round.ball.radius, self.round.inward, p)
+    }
+}
+
+impl<'a> Nearest<'a> {
+    #[inline]
+    fn offer(&mut self, t: f64, id: u32, rank: (u8, u32), round: Option<&'a Round>) {
         if t < self.t || t == self.t && t < f64::INFINITY && rank < self.rank {
-            *self = Nearest { t, id, rank };
+            *self = Nearest { t, id, rank, round };
         }
     }
 }

@@ -162,21 +162,27 @@ impl Scene {
         if t_sphere < t {
             (t, id) = (t_sphere, sphere);
         }
+        let mut skin = None;
         if let Some(crowd) = &self.crowd {
-            (t, id) = crowd.nearer(ray, (t, id));
+            (t, id, skin) = crowd.nearer(ray, (t, id));
         }
         for &other in self.others.iter().filter(|&&other| other != ray.from) {
             let candidate = self.surfaces[other as usize].intersect_flat(ray, time);
             if candidate < t {
-                (t, id) = (candidate, other);
+                (t, id, skin) = (candidate, other, None);
             }
         }
         if t == f64::INFINITY {
             return self.lights.sky().map(|sky| sky_hit(sky, ray));
         }
-        let surface = &self.surfaces[id as usize];
-        let (p, frame) = surface.at(ray.o + t * ray.d);
-        let material = &surface.material;
+        let p = ray.o + t * ray.d;
+        let ((p, frame), material) = match skin {
+            None => {
+                let surface = &self.surfaces[id as usize];
+                (surface.at(p), &surface.material)
+            }
+            Some(skin) => (skin.at(p), skin.material),
+        };
         let front = frame.n.dot(ray.d) < 0.0;
         let le = if front { material.le } else { Rgb::ZERO };
         let seen = front || material.bsdf.is_clear();

@@ -46,12 +46,7 @@ impl Surface {
     #[inline]
     pub fn at(&self, p: DVec3) -> (DVec3, Frame) {
         match &self.shape {
-            Shape::Sphere(s) => {
-                // one step of Newton's method towards unit length; without it rounding grows from bounce to bounce
-                let out = (p - s.center) * (1.0 / s.radius);
-                let out = out * (1.5 - 0.5 * out.length_squared());
-                (s.center + s.radius * out, Frame::around(if s.inward { -out } else { out }))
-            }
+            Shape::Sphere(s) => on_sphere(s.center, s.radius, s.inward, p),
             _ => (p, self.frame),
         }
     }
@@ -78,4 +73,13 @@ impl Surface {
             }
         }
     }
+}
+
+/// The point of a sphere nearest to `p`, which lies there up to rounding, and the frame of the front's normal.
+#[inline(always)]
+pub(super) fn on_sphere(center: DVec3, radius: f64, inward: bool, p: DVec3) -> (DVec3, Frame) {
+    // one step of Newton's method towards unit length; without it rounding grows from bounce to bounce
+    let out = (p - center) * (1.0 / radius);
+    let out = out * (1.5 - 0.5 * out.length_squared());
+    (center + radius * out, Frame::around(if inward { -out } else { out }))
 }
