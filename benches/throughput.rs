@@ -3,14 +3,15 @@
 //!
 //! Every value is written to the tally and folded into the block's moments, so that the compiler cannot drop the geometry
 //! of a furnace, where radiance does not depend on where a ray goes. Rays a path are printed: rays a second are paths a
-//! second times these.
+//! second times these. Time is that of the processor, so that others on the machine disturb little; only over threads is it
+//! that of the clock on the wall.
 
 use criterion::measurement::WallTime;
 use criterion::{
     BenchmarkGroup, BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
 };
 use furnace::estimator::{Estimator, Explicit, Heuristic, Implicit, Roulette, Rule, Technique};
-use furnace::experiment::block::Block;
+use furnace::experiment::cell::Block;
 use furnace::experiment::core::fast_block_of;
 use furnace::experiment::run::block_of;
 use furnace::experiment::{Cell, Overrides, Plan, run_cell, verdict};
@@ -23,7 +24,7 @@ use furnace::truth::gallery;
 use std::hint::black_box;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 fn scenes() -> Vec<(&'static str, SceneKind)> {
     let (albedo, emission, view) = (Rgb::new(0.8, 0.5, 0.2), Rgb::ONE, View::Probe);
@@ -64,6 +65,23 @@ fn brief<'a>(c: &'a mut Criterion, name: &str) -> BenchmarkGroup<'a, WallTime> {
     group
 }
 
+/// What this thread has had of the processor so far; no such account is kept but on Linux.
+fn processor() -> Option<Duration> {
+    // the kernel brings it up to date when a thread gives way
+    std::thread::yield_now();
+    let account = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    account.split(' ').next()?.parse().ok().map(Duration::from_nanos)
+}
+
+/// Processor time of so many runs.
+fn time<R>(runs: u64, run: impl Fn() -> R) -> Duration {
+    let (wall, before) = (Instant::now(), processor());
+    for _ in 0..runs {
+        black_box(run());
+    }
+    before.zip(processor()).map_or_else(|| wall.elapsed(), |(before, after)| after - before)
+}
+
 /// 65 536 paths.
 fn block(scene: &Scene, estimator: &Estimator, fast: Option<&Fast<'_>>, address: &Address) -> Block {
     let (width, height) = scene.sensor.resolution();
@@ -92,11 +110,11 @@ fn paths(c: &mut Criterion) {
             eprintln!("{scene_name} {name}: {rays:.2} rays a path, mean {:.4}", textbook.total[0].mean);
             let fast = Fast::of(&scene, &estimator).ok();
             group.bench_function(BenchmarkId::new("textbook", name), |b| {
-                b.iter(|| black_box(block(&scene, &estimator, None, &address)).tally.rays)
+                b.iter_custom(|runs| time(runs, || block(&scene, &estimator, None, &address)))
             });
             if fast.is_some() {
                 group.bench_function(BenchmarkId::new("fast", name), |b| {
-                    b.iter(|| black_box(block(&scene, &estimator, fast.as_ref(), &address)).tally.rays)
+                    b.iter_custom(|runs| time(runs, || block(&scene, &estimator, fast.as_ref(), &address)))
                 });
             }
         }
@@ -149,7 +167,7 @@ fn growth(c: &mut Criterion) {
         for samples in [8, 32, 128] {
             group.throughput(Throughput::Elements(u64::from(samples) * 16_384));
             group.bench_function(BenchmarkId::new("samples a pixel", samples), |b| {
-                b.iter(|| one.install(|| experiment(&of_samples(samples))))
+                b.iter_custom(|runs| one.install(|| time(runs, || experiment(&of_samples(samples)))))
             });
         }
         for cells in [4, 16, 64] {
@@ -158,7 +176,7 @@ fn growth(c: &mut Criterion) {
             let text = FURNACES.replace("CORE", core).replace("QS", &qs.join(", "));
             group.throughput(Throughput::Elements(cells as u64));
             group.bench_function(BenchmarkId::new("cells", cells), |b| {
-                b.iter(|| one.install(|| experiment(&text)))
+                b.iter_custom(|runs| one.install(|| time(runs, || experiment(&text))))
             });
         }
     }
