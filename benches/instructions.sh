@@ -67,7 +67,7 @@ compiler=$(rustc --version)
   echo "# $compiler"
   echo "workload,core,instructions"
   for workload in "light textbook 1 9" "light fast 1 9" "both textbook 1 9" "both fast 1 9" "furnace textbook 1000 33768" \
-    "furnace fast 1000 33768" "photons textbook 1 4"; do
+    "furnace fast 1000 33768" "photons textbook 1 4" "photons fast 1 4"; do
     # shellcheck disable=SC2086 # four words
     counts $workload || { [ -e "$folder/set" ] || exit 1; break; }
   done

@@ -11,7 +11,7 @@ use furnace::estimator::{
 };
 use furnace::experiment::core::fast_block_of;
 use furnace::experiment::run::block_of;
-use furnace::fast::{Fast, Level, Particles, instruction_set};
+use furnace::fast::{Fast, Level, instruction_set};
 use furnace::sampling::Address;
 use furnace::scene::library::{SceneKind, View};
 use furnace::scene::{Directions, LightSampling, Rgb, Scene};
@@ -60,31 +60,14 @@ fn cpu_seconds() -> f64 {
     account.split(' ').next().and_then(|nanoseconds| nanoseconds.parse::<f64>().ok()).unwrap_or(0.0) * 1e-9
 }
 
-/// Sends photons out and stores them; their number, and that of their rays.
-fn emit(scene: &Scene, map: &PhotonMap, address: &Address, realizations: std::ops::Range<u64>) -> (u64, u64) {
+/// Sends photons out and stores them; the number of their rays.
+fn emit(scene: &Scene, map: &impl Estimate, address: &Address, realizations: std::ops::Range<u64>) -> u64 {
     let mut tally = Tally::default();
-    let count = realizations.end - realizations.start;
     for realization in realizations {
         let stream = address.stream(realization, 0);
         black_box(map.begin(realization, &mut Ctx::shared(scene, stream, &mut tally)));
     }
-    (count * map.photons, tally.rays)
-}
-
-/// The same sixteen at a time.
-fn emit_fast(
-    particles: &Particles<'_>,
-    estimator: &Estimator,
-    address: &Address,
-    realizations: std::ops::Range<u64>,
-) -> (u64, u64) {
-    let Estimator::PhotonMap(map) = estimator else { unreachable!("the workload of photons") };
-    let mut tally = Tally::default();
-    let count = realizations.end - realizations.start;
-    for realization in realizations {
-        black_box(particles.map(map, realization, &address.repetition(realization), &mut tally));
-    }
-    (count * map.photons, tally.rays)
+    tally.rays
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -99,40 +82,37 @@ fn main() -> Result<(), Box<dyn Error>> {
     let realizations = first..first + realizations.parse::<u64>()?;
     let address = Address::of(&["workload", name]);
     let (width, height) = scene.sensor.resolution();
-    let samples = (realizations.end - first) * u64::from(width * height);
+    let count = realizations.end - first;
+    let (samples, photons) = (count * u64::from(width * height), count * PHOTONS);
 
-    let before = cpu_seconds();
-    let block = match (&estimator, core.as_str()) {
-        (Estimator::PhotonMap(map), "textbook") => {
-            let (paths, rays) = emit(&scene, map, &address, realizations);
-            println!("{:.6} {paths} {rays} {}", cpu_seconds() - before, instruction_set());
-            return Ok(());
-        }
-        (_, "textbook") => {
-            block_of(&scene, &estimator, &|number, pixel| address.stream(number, pixel), &[], realizations)
-        }
-        (_, "fast" | "fast_avx2") => {
-            let level = match core.as_str() {
-                "fast_avx2" => Level::new().as_avx2().map(Level::Avx2).ok_or("no AVX2 here")?,
-                _ => Level::new(),
-            };
-            let fast = match Fast::of(&scene, &estimator)? {
-                Fast::Paths(paths) => paths.on(level),
-                Fast::Particles(particles) => {
-                    let (paths, rays) = emit_fast(&particles.on(level), &estimator, &address, realizations);
-                    println!("{:.6} {paths} {rays} {}", cpu_seconds() - before, instruction_set());
-                    return Ok(());
-                }
-            };
-            let draw = |number, pixel| address.narrow_stream(number, pixel);
-            fast_block_of(&scene, &fast, &draw, &[], realizations)
-        }
+    let fast = Fast::of(&scene, &estimator)?;
+    let avx2 = || Level::new().as_avx2().map(Level::Avx2).ok_or("no AVX2 here");
+    let fast = match (core.as_str(), fast) {
+        ("textbook", _) => None,
+        ("fast", fast) => Some(fast),
+        ("fast_avx2", Fast::Paths(paths)) => Some(Fast::Paths(paths.on(avx2()?))),
+        ("fast_avx2", Fast::Particles(particles)) => Some(Fast::Particles(particles.on(avx2()?))),
         _ => return Err(format!("no core {core}: textbook, fast, fast_avx2").into()),
     };
-    let seconds = cpu_seconds() - before;
-    println!("{seconds:.6} {samples} {} {}", block.tally.rays, instruction_set());
 
-    if let Some(file) = rest.get(2) {
+    let before = cpu_seconds();
+    let (paths, rays, block) = match (&estimator, &fast) {
+        (Estimator::PhotonMap(map), None) => (photons, emit(&scene, map, &address, realizations), None),
+        (_, Some(Fast::Particles(map))) => (photons, emit(&scene, map, &address, realizations), None),
+        (_, None) => {
+            let draw = |number, pixel| address.stream(number, pixel);
+            let block = block_of(&scene, &estimator, &draw, &[], realizations);
+            (samples, block.tally.rays, Some(block))
+        }
+        (_, Some(Fast::Paths(paths))) => {
+            let draw = |number, pixel| address.narrow_stream(number, pixel);
+            let block = fast_block_of(&scene, paths, &draw, &[], realizations);
+            (samples, block.tally.rays, Some(block))
+        }
+    };
+    println!("{:.6} {paths} {rays} {}", cpu_seconds() - before, instruction_set());
+
+    if let (Some(file), Some(block)) = (rest.get(2), block) {
         let pixels = &block.pixels;
         let degrees = (pixels.n.max(2) - 1) as f64;
         let values = pixels.mean.iter().zip(&pixels.m2).flat_map(|(mean, m2)| {
