@@ -112,13 +112,17 @@ pub(super) fn derived(value: Option<f64>) -> String {
     value.map_or_else(String::new, |v| format!("{v:.8e}"))
 }
 
-/// The text of `timing.csv`.
-pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64]) -> Vec<u8> {
+/// The text of `timing.csv`; the last column is the time after which all questions about a cell were decided, by the
+/// share of its samples that they needed, and empty where nothing was asked.
+pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64], rows: &[Row]) -> Vec<u8> {
     let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(["experiment", "cell", "core", "realizations", "rays", "seconds", "rays_per_second"])
-        .expect("a Vec takes all");
-    for ((cell_plan, cell), seconds) in plan.cells.iter().zip(cells).zip(seconds) {
+    let header = ["experiment", "cell", "core", "realizations", "rays", "seconds", "rays_per_second"];
+    csv.write_record(header.into_iter().chain(["seconds_to_verdict"])).expect("a Vec takes all");
+    for (index, ((cell_plan, cell), seconds)) in plan.cells.iter().zip(cells).zip(seconds).enumerate() {
         let Some(cell) = cell else { continue };
+        let judged = rows.iter().filter(|row| row.cell == index && row.verdict.is_some());
+        let needed = judged.map(|row| row.needed.unwrap_or(row.samples)).max();
+        let to_verdict = needed.map(|n| seconds * n as f64 / cell.cost.n as f64);
         let rays = cell.cost.mean * cell.cost.n as f64;
         let record = [
             plan.name.clone(),
@@ -128,6 +132,7 @@ pub fn timing(plan: &Plan, cells: &[Option<Cell>], seconds: &[f64]) -> Vec<u8> {
             format!("{rays:.0}"),
             format!("{seconds:.4}"),
             format!("{:.0}", rays / seconds),
+            to_verdict.map_or_else(String::new, |seconds| format!("{seconds:.4}")),
         ];
         csv.write_record(record).expect("a Vec takes all");
     }

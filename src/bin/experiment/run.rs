@@ -55,7 +55,7 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
     let store = Store::open(&folder)?;
     let (cells, seconds) = sample(plan, options, stop)?;
     let rows = verdict::rows(plan, &cells);
-    store.write("timing.csv", &table::timing(plan, &cells, &seconds))?;
+    store.write("timing.csv", &table::timing(plan, &cells, &seconds, &rows))?;
     store.write("run.json", provenance(source, plan).as_bytes())?;
     report::write(plan, &cells, &rows, &store, None)?;
     let interrupted = cells.iter().any(Option::is_none);
