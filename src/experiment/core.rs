@@ -4,7 +4,7 @@ use super::block::Block;
 use super::ledger::Stream;
 use super::plan::CellPlan;
 use super::run::block_of;
-use crate::estimator::Tally;
+use crate::estimator::{Estimator, Tally};
 use crate::fast::{self, Fast, PathTracer};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -23,6 +23,11 @@ pub enum Core {
 }
 
 impl Core {
+    /// This core where the scene offers it to the estimator, the textbook elsewhere.
+    pub fn if_offered(self, scene: &Scene, estimator: &Estimator) -> Self {
+        if Fast::of(scene, estimator).is_ok() { self } else { Core::Textbook }
+    }
+
     /// Bound on the relative error that rounding leaves in a mean, beyond that of double precision, which verdicts neglect:
     /// `cargo bench --bench rounding` measures less in every scene.
     pub fn rounding(self) -> f64 {

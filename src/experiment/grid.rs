@@ -8,7 +8,6 @@ use super::reach;
 use super::runs;
 use super::spec::{Grid, Spec, Streams};
 use crate::estimator::{Estimator, Roulette, Rule};
-use crate::fast::Fast;
 use crate::faults::Fault;
 use crate::sampling::Address;
 use crate::scene::Scene;
@@ -88,7 +87,10 @@ fn grid_cells(
                     estimator_label: estimator.choice.label.clone(),
                     roulette_label: roulette.choice.label.clone(),
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
-                    core: core(spec.core, &built, &whole, fault),
+                    core: match fault {
+                        None => spec.core.if_offered(&built, &whole),
+                        Some(_) => Core::Textbook,
+                    },
                     samples: grid.samples.unwrap_or(spec.samples),
                     block: run.unwrap_or(0),
                     traced: run.is_some(),
@@ -109,12 +111,6 @@ fn grid_cells(
         }
     }
     Ok(())
-}
-
-/// The core that samples a cell: the textbook wherever there is no other.
-fn core(wanted: Core, scene: &Scene, estimator: &Estimator, fault: Option<&Fault>) -> Core {
-    let is_offered = fault.is_none() && Fast::of(scene, estimator).is_ok();
-    if is_offered { wanted } else { Core::Textbook }
 }
 
 /// The choices of one axis of the grid, their sweeps written out.

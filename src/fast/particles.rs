@@ -163,10 +163,8 @@ impl Arrival for Shown<'_> {
                 let f = hit.material.bsdf.f(hit.frame.n, way.wo, hit.wo);
                 seen[lane] = (way.pixel, f * (cos * way.importance));
                 to_sensor.set(lane, way.to_sensor);
-                (to[lane], open) = (way.surface, {
-                    open.set(lane, true);
-                    open
-                });
+                to[lane] = way.surface;
+                open.set(lane, true);
             }
         }
         particles.count(open);

@@ -1,6 +1,6 @@
 //! The narrow streams of sixteen paths: number for number those of [`crate::sampling::Stream`].
 
-use super::vector::{F, M, U, WIDTH, exact};
+use super::vector::{F, M, U, exact};
 use fearless_simd::{Simd, prelude::*};
 
 /// Sixteen generators.
@@ -19,7 +19,6 @@ impl<S: Simd> Streams<S> {
     /// The stream of one path.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, state: [u32; 4]) {
-        debug_assert!(lane < WIDTH);
         for (ours, word) in self.state.iter_mut().zip(state) {
             ours[lane] = word;
         }

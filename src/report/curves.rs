@@ -268,7 +268,7 @@ pub fn optimum(lookup: &Lookup<'_>, curve: &Curve) -> Option<Mark> {
     let (cell, optimum) = optimum_of(lookup, curve)?;
     let x = optimum.best?;
     let closed = ClosedForm::of(&cell.scene, &with_q(&cell.estimator, x))?;
-    debug_assert!(closed.central(curve.channel, Counted::All, 2) != Known::Infinite);
+    assert!(closed.central(curve.channel, Counted::All, 2) != Known::Infinite);
     let y = predicted(&closed, Quantity::Efficiency, curve.channel, None)?;
     Some(Mark::Point {
         x,

@@ -98,13 +98,13 @@ impl Stake {
 impl Bets {
     /// Before the first sample.
     pub fn new(stake: Stake) -> Self {
-        debug_assert_eq!(stake.defect(), None);
+        assert_eq!(stake.defect(), None);
         Bets { stake, n: 0, void: 0, positive: false, above: [0.0; BETS], below: [0.0; BETS] }
     }
 
     /// Adds the samples that `other` has bet on; in the order of blocks, for the same bits.
     pub fn merge(&mut self, other: &Bets) {
-        debug_assert_eq!(self.stake, other.stake);
+        assert_eq!(self.stake, other.stake);
         self.n += other.n;
         self.void += other.void;
         self.positive |= other.positive;

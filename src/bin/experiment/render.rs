@@ -4,7 +4,6 @@ use crate::args::{Options, Render};
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, subject};
 use furnace::experiment::{CellPlan, Core, Error, run_cell};
-use furnace::fast::Fast;
 use furnace::report::images;
 use furnace::sampling::Address;
 use furnace::truth::Truth;
@@ -19,8 +18,7 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
     if width * height == 1 {
         return Err(Error::Refused(format!("{} has no camera, so there is no image to render", args.scene)));
     }
-    let wanted = options.core.map_or(Core::Textbook, Core::from);
-    let core = if Fast::of(&scene.build(), &estimator).is_ok() { wanted } else { Core::Textbook };
+    let core = options.core.map_or(Core::Textbook, Core::from).if_offered(&scene.build(), &estimator);
     let plan = CellPlan {
         address: Address::of(&[
             "render",

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 ///
 /// The box kernel misses the segment of a circle, [acos s - s √(1 - s²)]/π with s = `distance`/`radius`.
 pub fn straight(kernel: Kernel, distance: f64, radius: f64) -> f64 {
-    debug_assert!(distance >= 0.0 && radius > 0.0, "{distance} from an edge with radius {radius}");
+    assert!(distance >= 0.0 && radius > 0.0, "{distance} from an edge with radius {radius}");
     let s = distance / radius;
     if s >= 1.0 {
         return 1.0;
@@ -32,7 +32,7 @@ fn first_moment(s: f64, angle: f64, chord: f64) -> f64 {
 /// Factor of every kernel at the tip of a wedge with that inner angle \[rad\], in (0, 2π]: 1/2 on a straight edge, 1/4 in a
 /// square corner. K nearest neighbours have this times their own factor.
 pub fn wedge(angle: f64) -> f64 {
-    debug_assert!(angle > 0.0 && angle <= 2.0 * PI, "a wedge of {angle} rad");
+    assert!(angle > 0.0 && angle <= 2.0 * PI, "a wedge of {angle} rad");
     angle / (2.0 * PI)
 }
 
@@ -56,7 +56,7 @@ pub fn square_corner(distances: (f64, f64), radius: f64) -> f64 {
 ///
 /// (1 - s²)/2 for the box kernel: at s = 0 it makes up for what the floor lacks.
 pub fn wall(kernel: Kernel, distance: f64, radius: f64) -> f64 {
-    debug_assert!(distance >= 0.0 && radius > 0.0, "{distance} from a wall with radius {radius}");
+    assert!(distance >= 0.0 && radius > 0.0, "{distance} from a wall with radius {radius}");
     let s = distance / radius;
     if s >= 1.0 {
         return 0.0;

@@ -22,7 +22,7 @@ pub fn from_laplacians(kernel: Kernel, radius: f64, laplacians: &[f64]) -> f64 {
 /// By what cos(k x + phase) is multiplied when it is averaged over a disc of radius r, as a function of `phase` = k r in
 /// [0, 50]: 2 J1(z)/z of the box kernel, 8 J2(z)/z² of Epanechnikov's; in [-0.14, 1]. A constant beside it stays as it is.
 pub fn cosine(kernel: Kernel, phase: f64) -> f64 {
-    debug_assert!((0.0..=50.0).contains(&phase), "{phase} rad across a radius");
+    assert!((0.0..=50.0).contains(&phase), "{phase} rad across a radius");
     if phase < 1e-3 {
         return from_laplacians(kernel, phase, &[1.0, -1.0, 1.0]);
     }
@@ -39,7 +39,7 @@ pub fn cosine(kernel: Kernel, phase: f64) -> f64 {
 /// By what exp(g·x) at the centre is multiplied when it is averaged over a disc of radius r, as a function of `slope` =
 /// |g| r in [0, 500]: 2 I1(z)/z of the box kernel; at least 1.
 pub fn exponential(kernel: Kernel, slope: f64) -> f64 {
-    debug_assert!((0.0..=500.0).contains(&slope), "a slope of {slope} across a radius");
+    assert!((0.0..=500.0).contains(&slope), "a slope of {slope} across a radius");
     let (mut scale, mut mean) = (1.0, 0.0);
     for n in 0..2000u32 {
         let term = scale * kernel.moment(n);
@@ -56,7 +56,7 @@ pub fn exponential(kernel: Kernel, slope: f64) -> f64 {
 /// Factor of the box kernel at the foot of a point light, `height` above a plane, for that radius in the same unit:
 /// (2h²/r²)(1 - h/√(h² + r²)), in (0, 1].
 pub fn foot(height: f64, radius: f64) -> f64 {
-    debug_assert!(height > 0.0 && radius >= 0.0, "a light at height {height}, a radius of {radius}");
+    assert!(height > 0.0 && radius >= 0.0, "a light at height {height}, a radius of {radius}");
     let rim = libm::hypot(height, radius);
     2.0 * height * height / (rim * (rim + height))
 }
@@ -77,8 +77,8 @@ impl Nearest {
     /// first.
     fn versine(&self) -> f64 {
         let Nearest { height, radius } = *self;
-        debug_assert!(height > 0.0 && height <= 1.0, "a light {height} radii from the wall");
-        debug_assert!(radius > 0.0 && radius <= 2.0, "a chord of {radius} radii");
+        assert!(height > 0.0 && height <= 1.0, "a light {height} radii from the wall");
+        assert!(radius > 0.0 && radius <= 2.0, "a chord of {radius} radii");
         let square = radius * radius;
         // the cap's rim as seen from the light: how far ahead, and its distance
         let ahead = height - 0.5 * square;

@@ -6,7 +6,7 @@ pub use crate::estimator::Kernel;
 impl Kernel {
     /// Weight at `s` = distance / radius relative to that of a photon at the centre, in [0, 1]; 0 for `s` above 1.
     pub fn profile(self, s: f64) -> f64 {
-        debug_assert!(s >= 0.0, "a distance of {s} radii");
+        assert!(s >= 0.0, "a distance of {s} radii");
         match self {
             _ if s > 1.0 => 0.0,
             Kernel::Box => 1.0,
@@ -54,7 +54,7 @@ impl Kernel {
         match self {
             Kernel::Box => 1.0 / (n + 1.0),
             Kernel::Cone { c } => {
-                debug_assert!(c >= 1.0, "a cone of {c} weighs photons negatively");
+                assert!(c >= 1.0, "a cone of {c} weighs photons negatively");
                 1.0 / (n + 1.0) - 2.0 / ((2.0 * n + 3.0) * c)
             }
             Kernel::Epanechnikov => 1.0 / ((n + 1.0) * (n + 2.0)),

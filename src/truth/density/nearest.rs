@@ -11,25 +11,25 @@ use crate::truth::moments::power;
 
 /// Factor of k / (π r_k²): k / (k - 1), infinite for k = 1.
 pub fn factor_of_all(k: u64) -> f64 {
-    debug_assert!(k >= 1);
+    assert!(k >= 1);
     k as f64 / (k as f64 - 1.0)
 }
 
 /// Factor of (k - 1) / (π r_k²): 1, and 0 for k = 1.
 pub fn factor_without_last(k: u64) -> f64 {
-    debug_assert!(k >= 1);
+    assert!(k >= 1);
     if k == 1 { 0.0 } else { 1.0 }
 }
 
 /// Variance of (k - 1) / (π r_k²) over the squared truth, k from 2 to `n`: (n - k + 1) / (n (k - 2)).
 pub fn variance_without_last(k: u64, n: u64) -> f64 {
-    debug_assert!((2..=n).contains(&k), "{k} nearest of {n}");
+    assert!((2..=n).contains(&k), "{k} nearest of {n}");
     (n - k + 1) as f64 / (n as f64 * (k as f64 - 2.0))
 }
 
 /// The same for many photons: 1 / (k - 2), k from 2.
 pub fn limit_without_last(k: u64) -> f64 {
-    debug_assert!(k >= 2);
+    assert!(k >= 2);
     1.0 / (k as f64 - 2.0)
 }
 
@@ -90,8 +90,8 @@ impl Stored {
     }
 
     fn sums(&self, counted: Counted) -> Sums {
-        debug_assert!(self.k >= 2 && self.photons >= self.k, "{} nearest of {}", self.k, self.photons);
-        debug_assert!(self.q > 0.0 && self.q < 1.0, "photons survive with probability {}", self.q);
+        assert!(self.k >= 2 && self.photons >= self.k, "{} nearest of {}", self.k, self.photons);
+        assert!(self.q > 0.0 && self.q < 1.0, "photons survive with probability {}", self.q);
         let one = Photons::uniform(self.albedo, self.q);
         let (photons, mean, hits) = (self.photons as f64, one.mean(counted), 1.0 / (1.0 - self.q));
         let (squares, own) = self.squares(counted);

@@ -37,7 +37,7 @@ impl Spot {
     /// variance is twice the squared bias, and the error falls as the photons' number to the -2/3.
     pub fn best_radius(&self, kernel: Kernel) -> f64 {
         let slope = kernel.bias() * self.laplacian;
-        debug_assert!(slope != 0.0, "without a Laplacian, larger radii are always better");
+        assert!(slope != 0.0, "without a Laplacian, larger radii are always better");
         let sixth = kernel.variance() * self.irradiance * self.photon / (2.0 * PI * slope * slope);
         libm::cbrt(sixth.sqrt())
     }
@@ -51,7 +51,7 @@ impl Spot {
     /// Bias [W m^-2] of the k nearest without the outermost, (k - 1) `photon` / (π r_k²), k from 2: as for a fixed radius
     /// that holds k - 1 photons.
     pub fn nearest_bias(&self, k: u64) -> f64 {
-        debug_assert!(k >= 2);
+        assert!(k >= 2);
         Kernel::Box.bias() * self.laplacian * (k as f64 - 1.0) * self.photon / (PI * self.irradiance)
     }
 
@@ -65,7 +65,7 @@ impl Spot {
     /// k³ ≈ 32 π² E^4 / (ΔE `photon`)².
     pub fn best_count(&self) -> u64 {
         let one = self.nearest_bias(2) / self.irradiance;
-        debug_assert!(one != 0.0, "without a Laplacian, more neighbours are always better");
+        assert!(one != 0.0, "without a Laplacian, more neighbours are always better");
         // (k - 2)² (k - 1) = 1 / (2 one²), whose root is between 1 and 2 above the cube root of the right side
         let root = libm::cbrt(0.5 / (one * one)) as u64;
         let candidates = root.max(2) + 1..=root.max(2) + 3;

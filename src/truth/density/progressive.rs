@@ -64,8 +64,8 @@ impl Shrinking {
     }
 
     fn counted(&self, passes: u64) -> f64 {
-        debug_assert!(passes >= 1, "passes count from 1");
-        debug_assert!(self.alpha > 0.0 && self.alpha <= 1.0, "α of {}", self.alpha);
+        assert!(passes >= 1, "passes count from 1");
+        assert!(self.alpha > 0.0 && self.alpha <= 1.0, "α of {}", self.alpha);
         passes as f64
     }
 }

@@ -45,10 +45,10 @@ impl Photons {
     /// A sphere of several parts whose fractions add up to 1, the kernel lying wholly in part number `here`.
     pub fn patches(parts: &[Coated], here: usize) -> Self {
         let sum = |f: fn(&Coated) -> f64| parts.iter().map(|part| part.fraction * f(part)).sum::<f64>();
-        debug_assert!((sum(|_| 1.0) - 1.0).abs() < 1e-9, "parts of a sphere: {parts:?}");
-        debug_assert!(parts.iter().all(|p| p.q > 0.0 && p.q <= 1.0), "not probabilities: {parts:?}");
+        assert!((sum(|_| 1.0) - 1.0).abs() < 1e-9, "parts of a sphere: {parts:?}");
+        assert!(parts.iter().all(|p| p.q > 0.0 && p.q <= 1.0), "not probabilities: {parts:?}");
         let (mean, square) = (sum(|p| p.albedo), sum(|p| p.albedo * p.albedo / p.q));
-        debug_assert!((0.0..1.0).contains(&mean), "a mean albedo of {mean}");
+        assert!((0.0..1.0).contains(&mean), "a mean albedo of {mean}");
         Photons { mean, square, here: parts[here].albedo, most: None }
     }
 
@@ -80,8 +80,8 @@ impl Photons {
     /// E Y² = 4 `kernel.variance()` / `radius`², where Y has mean 1, and a hit and a later one are as independent as their
     /// weights.
     pub fn variance(&self, kernel: Kernel, radius: f64, photons: u64, counted: Counted) -> f64 {
-        debug_assert!(radius > 0.0 && radius <= 2.0, "a chord of {radius} radii");
-        debug_assert!(photons >= 1);
+        assert!(radius > 0.0 && radius <= 2.0, "a chord of {radius} radii");
+        assert!(photons >= 1);
         let mean = self.mean(counted);
         (self.second(4.0 * kernel.variance() / (radius * radius), counted) - mean * mean) / photons as f64
     }

@@ -41,7 +41,7 @@ pub(crate) struct Pair {
 impl Pair {
     /// `a` and `b` are indices into [`WALLS`].
     pub fn new(a: usize, b: usize) -> Self {
-        debug_assert_ne!(a, b, "points of one wall do not see each other");
+        assert_ne!(a, b, "points of one wall do not see each other");
         let (a, b) = (WALLS[a], WALLS[b]);
         // distance from a wall at 1 falls where the coordinate rises
         let sign = if a.normal == b.normal || a.position == b.position { 1.0 } else { -1.0 };
