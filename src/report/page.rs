@@ -1,20 +1,19 @@
 //! `index.html`: question, answer, verdicts, what is wrong and where, figures, images and numbers in one page that needs no
 //! network.
 
+mod assets;
 mod evidence;
 mod faults;
+mod images;
 mod numbers;
+mod packed;
 mod places;
 mod trajectory;
 mod verdicts;
 
-use super::difference::FULL;
-use super::figure;
 use super::lookup::Lookup;
 use super::summary::{self, Line};
 use crate::experiment::{Cell, Core, Plan};
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A figure as the page shows it.
@@ -62,9 +61,7 @@ pub fn page(
         @if !figures.is_empty() {
             section { h2 { "Figures" } @for drawn in figures { (figure_block(drawn)) } }
         }
-        @if !pictures.is_empty() {
-            section { h2 { "Images" } (gallery(pictures)) }
-        }
+        (images::section(pictures))
         section { h2 { "Numbers" } @for &cell in &finished { (numbers::numbers(lookup, cells, cell)) } }
         section { h2 { "How to repeat this" } (provenance(lookup)) }
     };
@@ -80,11 +77,12 @@ pub(super) fn frame(plan: &Plan, main: &Markup) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { "furnace: " (plan.name) }
-                style { (PreEscaped(style())) }
+                style { (PreEscaped(assets::style())) }
             }
             body {
                 header { h1 { (plan.name) } p.question { (plan.spec.question) } }
                 main { (main) }
+                script { (PreEscaped(assets::script())) }
             }
         }
     }
@@ -97,32 +95,6 @@ fn figure_block(drawn: &Drawn) -> Markup {
             (PreEscaped(&drawn.svg))
             figcaption { a href={ (drawn.name) ".svg" } { "SVG" } " · " a href={ (drawn.name) ".png" } { "PNG" } }
         }
-    }
-}
-
-fn gallery(pictures: &[Picture]) -> Markup {
-    let data = |png: &[u8]| format!("data:image/png;base64,{}", STANDARD.encode(png));
-    html! {
-        p {
-            "Same exposure for all pictures; the EXR files hold mean, variance, samples and bias against the reference. "
-            @if pictures.iter().any(|picture| picture.map.is_some()) {
-                "The maps show the signed difference from the reference in units of its standard error, block by block: "
-                "red, green, and below them blue; white is none, blue means too dark by " (FULL) " standard errors or "
-                "more, orange too bright. Noise alone colours one block of 16,000 fully, more where few paths find light: "
-                "there the standard error is itself not well known, and most often too small."
-            }
-        }
-        div.gallery { @for picture in pictures {
-            figure {
-                div {
-                    img src=(data(&picture.png)) alt=(picture.label);
-                    @if let Some(map) = &picture.map {
-                        img src=(data(map)) alt={ "signed difference of " (picture.label) " from the reference" };
-                    }
-                }
-                figcaption { (picture.label) " · " a href={ (picture.name) ".exr" } { "EXR" } }
-            }
-        } }
     }
 }
 
@@ -164,12 +136,4 @@ fn samples(lookup: &Lookup<'_>) -> String {
     let as_written = spec.grid.0.iter().all(|grid| grid.samples.unwrap_or(spec.samples) == first);
     let alike = plan.cells.iter().all(|cell| cell.samples == first);
     if alike && !as_written { format!(" --samples {first}") } else { String::new() }
-}
-
-fn style() -> String {
-    let font = STANDARD.encode(figure::WOFF2);
-    format!(
-        "@font-face{{font-family:'Furnace Sans';src:url(data:font/woff2;base64,{font}) format('woff2')}}{}",
-        include_str!("page.css")
-    )
 }

@@ -1,0 +1,25 @@
+//! What makes the page look and answer: font, styles and scripts, all of them inside the file.
+
+use crate::report::figure;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+/// Style sheets in their order.
+const STYLES: [&str; 1] = [include_str!("style/page.css")];
+
+/// Scripts in their order; each one defines functions and nothing else, the last one calls them.
+const SCRIPTS: [&str; 2] = [include_str!("script/data.js"), include_str!("script/main.js")];
+
+/// The style sheet of a page, with the font of its figures.
+pub fn style() -> String {
+    let font = STANDARD.encode(figure::WOFF2);
+    format!(
+        "@font-face{{font-family:'Furnace Sans';src:url(data:font/woff2;base64,{font}) format('woff2')}}\n{}",
+        STYLES.concat()
+    )
+}
+
+/// The script of a page, whose names are its own.
+pub fn script() -> String {
+    format!("\"use strict\";(() => {{\n{}}})();", SCRIPTS.concat())
+}
