@@ -15,6 +15,7 @@ mod colour;
 mod data;
 pub(super) mod font;
 mod frame;
+mod json;
 mod legend;
 mod mark;
 mod paint;
@@ -29,6 +30,7 @@ mod ticks;
 pub use colour::Colour;
 pub use data::{Marker, Point, Series, Style};
 pub use font::{FAMILY, WOFF2};
+pub use json::{hex, json};
 
 /// A figure: a title, one legend for all panels, and the panels.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -176,17 +178,14 @@ pub enum FigureError {
     },
 }
 
-/// Writes `stem`.svg and `stem`.png (two pixels to the unit of the SVG) and returns the text of the
-/// SVG, which may be put into a page as it is. The directory must exist.
+/// Writes `stem`.svg and `stem`.png (two pixels to the unit of the SVG). The directory must exist.
 ///
 /// # Errors
 ///
 /// When drawing fails or a file cannot be written.
-pub fn write(figure: &Figure, stem: &Path) -> Result<String, FigureError> {
-    let svg = svg(figure)?;
-    save(with_ending(stem, ".svg"), svg.as_bytes())?;
-    save(with_ending(stem, ".png"), &paint::png(&sheet::draw(figure))?)?;
-    Ok(svg)
+pub fn write(figure: &Figure, stem: &Path) -> Result<(), FigureError> {
+    save(with_ending(stem, ".svg"), svg(figure)?.as_bytes())?;
+    save(with_ending(stem, ".png"), &paint::png(&sheet::draw(figure))?)
 }
 
 fn save(path: PathBuf, bytes: &[u8]) -> Result<(), FigureError> {

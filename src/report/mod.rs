@@ -4,6 +4,7 @@ pub mod answer;
 mod axes;
 mod budget;
 mod compare;
+pub mod costs;
 mod curves;
 mod decline;
 pub mod difference;
@@ -15,9 +16,11 @@ pub mod lookup;
 mod mistakes;
 pub mod mitsuba;
 mod number;
+pub mod overview;
 mod page;
 pub mod plots;
 mod replay;
+pub mod run;
 mod shares;
 pub mod study;
 mod summary;
@@ -31,8 +34,11 @@ pub use lookup::Lookup;
 
 use crate::experiment::store::Store;
 use crate::experiment::{Cell, Error, Plan, Row};
+use crate::stats::Verdict;
 use crate::truth::{Reference, Truth};
-use page::{Drawn, Picture};
+use overview::Summary;
+use page::{Content, Drawn, Picture};
+use run::Run;
 use std::io;
 use std::path::Path;
 
@@ -41,25 +47,54 @@ pub fn write(
     plan: &Plan,
     cells: &[Option<Cell>],
     rows: &[Row],
+    run: &Run,
     store: &Store,
     images: Option<&Path>,
 ) -> Result<(), Error> {
     let lookup = Lookup::new(plan, rows);
+    store.write(run::FILE, run.text().as_bytes())?;
+    store.write("timing.csv", &table::timing(plan, cells, &run.seconds, rows))?;
     store.write("results.csv", &table::results(plan, cells, rows))?;
     if cells.iter().flatten().any(|cell| !cell.traces.is_empty()) {
         store.write("convergence.csv", &decline::csv(plan, cells))?;
     }
     let mut drawn = Vec::new();
     for plots::Named { name, figure } in plots::figures(&lookup, cells) {
-        let svg = figure::write(&figure, &store.path().join(&name)).map_err(|e| failed(store, &e))?;
-        drawn.push(Drawn { name, svg });
+        figure::write(&figure, &store.path().join(&name)).map_err(|e| failed(store, &e))?;
+        drawn.push(Drawn { name, figure });
     }
     let pictures = match images {
         None => draw_images(plan, cells, store)?,
         Some(folder) => copy_images(plan, cells, store, folder)?,
     };
     let answer = answer::sentences(&lookup);
-    store.write("index.html", page::page(&lookup, cells, &answer, &drawn, &pictures).as_bytes())
+    let figure = drawn.first().map(|drawn| format!("{}.svg", drawn.name));
+    store.write(overview::FILE, summary(&lookup, &answer, figure).text().as_bytes())?;
+    let costs = costs::of(&lookup);
+    let content = Content {
+        lookup: &lookup,
+        cells,
+        answer: &answer,
+        costs: &costs,
+        figures: &drawn,
+        pictures: &pictures,
+        run,
+    };
+    store.write("index.html", page::page(&content).as_bytes())
+}
+
+fn summary(lookup: &Lookup<'_>, answer: &[String], figure: Option<String>) -> Summary {
+    let finished: Vec<usize> = (0..lookup.plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty()).collect();
+    let count = |verdict| finished.iter().filter(|&&cell| lookup.verdict(cell) == Some(verdict)).count();
+    let verdicts = [Verdict::Invalid, Verdict::Fail, Verdict::Inconclusive, Verdict::Pass];
+    Summary {
+        experiment: lookup.plan.name.clone(),
+        question: lookup.plan.spec.question.clone(),
+        answer: answer.to_vec(),
+        cells: finished.len(),
+        verdicts: verdicts.map(|v| (v, count(v))).into_iter().filter(|(_, n)| *n > 0).collect(),
+        figure,
+    }
 }
 
 fn failed(store: &Store, error: &dyn std::error::Error) -> Error {

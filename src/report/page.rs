@@ -1,27 +1,38 @@
-//! `index.html`: question, answer, verdicts, what is wrong and where, figures, images and numbers in one page that needs no
-//! network.
+//! `index.html`: question, answer, verdicts, what is wrong and where, costs, figures, images and numbers in one page that
+//! needs no network. All of it is a function of what was measured, but for one line, which is of the run.
 
 mod assets;
+mod bounces;
+mod costs;
+mod details;
 mod evidence;
 mod faults;
+mod figures;
 mod images;
-mod numbers;
 mod packed;
 mod places;
+mod provenance;
 mod trajectory;
 mod verdicts;
 
+pub use provenance::repeat;
+pub use verdicts::badge;
+
+use super::costs::Cost;
+use super::figure::Figure;
 use super::lookup::Lookup;
+use super::run::Run;
 use super::summary::{self, Line};
-use crate::experiment::{Cell, Core, Plan};
+use crate::experiment::{Cell, Plan};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde_json::json;
 
 /// A figure as the page shows it.
 pub struct Drawn {
     /// File name without extension.
     pub name: String,
-    /// The SVG.
-    pub svg: String,
+    /// What it shows.
+    pub figure: Figure,
 }
 
 /// An image as the page shows it.
@@ -36,104 +47,81 @@ pub struct Picture {
     pub map: Option<Vec<u8>>,
 }
 
+/// What a page is made of.
+pub struct Content<'a> {
+    /// The rows.
+    pub lookup: &'a Lookup<'a>,
+    /// What was measured.
+    pub cells: &'a [Option<Cell>],
+    /// The answer in words.
+    pub answer: &'a [String],
+    /// What cells cost.
+    pub costs: &'a [Cost],
+    /// Figures.
+    pub figures: &'a [Drawn],
+    /// Images.
+    pub pictures: &'a [Picture],
+    /// Which run it was.
+    pub run: &'a Run,
+}
+
 /// The whole page.
-pub fn page(
-    lookup: &Lookup<'_>,
-    cells: &[Option<Cell>],
-    answer: &[String],
-    figures: &[Drawn],
-    pictures: &[Picture],
-) -> String {
+pub fn page(content: &Content<'_>) -> String {
+    let Content { lookup, cells, figures, .. } = content;
     let plan = lookup.plan;
     let finished: Vec<usize> = (0..plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty()).collect();
-    let lines: Vec<Line> = finished.iter().map(|&c| summary::line(lookup, c)).collect();
+    let lines: Vec<(usize, Line)> = finished.iter().map(|&c| (c, summary::line(lookup, c))).collect();
+    let data = json!({
+        "columns": details::columns(),
+        "cells": finished.iter().map(|&c| details::of(lookup, cells, c)).collect::<Vec<_>>(),
+        "figures": figures::json(figures),
+        "costs": costs::json(lookup, content.costs),
+    });
     let main = html! {
-        section {
+        section #answer {
             h2 { "Answer" }
             @if finished.len() < plan.cells.len() {
                 p.warn { "Interrupted: " (finished.len()) " of " (plan.cells.len()) " cells finished." }
             }
-            ul { @for sentence in answer { li { (sentence) } } }
+            (verdicts::counts(&lines))
+            ul { @for sentence in content.answer { li { (sentence) } } }
         }
-        section { h2 { "Verdicts" } (verdicts::claims(lookup)) (verdicts::verdicts(&lines)) }
+        section #verdicts { h2 { "Verdicts" } (verdicts::verdicts(&lines)) (verdicts::claims(lookup)) }
         (places::section(lookup))
         (faults::section(lookup))
-        @if !figures.is_empty() {
-            section { h2 { "Figures" } @for drawn in figures { (figure_block(drawn)) } }
-        }
-        (images::section(pictures))
-        section { h2 { "Numbers" } @for &cell in &finished { (numbers::numbers(lookup, cells, cell)) } }
-        section { h2 { "How to repeat this" } (provenance(lookup)) }
+        (costs::section(lookup, content.costs))
+        (figures::section(figures))
+        (images::section(content.pictures))
+        section #repeat { h2 { "How to repeat this" } (provenance::section(lookup)) }
+        (packed::json("data", &data))
     };
-    frame(plan, &main)
+    frame(plan, &main, content.run)
 }
 
 /// A page about an experiment: its name and question, and what there is to say.
-pub(super) fn frame(plan: &Plan, main: &Markup) -> String {
+pub(super) fn frame(plan: &Plan, main: &Markup, run: &Run) -> String {
+    let header = html! { h1 { (plan.name) } p.question { (plan.spec.question) } };
+    bare(&plan.name, &header, &html! { (main) (provenance::line(run)) })
+}
+
+/// Any page.
+pub(super) fn bare(title: &str, header: &Markup, main: &Markup) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "furnace: " (plan.name) }
+                meta name="color-scheme" content="light dark";
+                title { "furnace: " (title) }
                 style { (PreEscaped(assets::style())) }
             }
             body {
-                header { h1 { (plan.name) } p.question { (plan.spec.question) } }
+                header { (header) }
                 main { (main) }
                 script { (PreEscaped(assets::script())) }
             }
         }
     }
     .into_string()
-}
-
-fn figure_block(drawn: &Drawn) -> Markup {
-    html! {
-        figure {
-            (PreEscaped(&drawn.svg))
-            figcaption { a href={ (drawn.name) ".svg" } { "SVG" } " · " a href={ (drawn.name) ".png" } { "PNG" } }
-        }
-    }
-}
-
-fn provenance(lookup: &Lookup<'_>) -> Markup {
-    let plan = lookup.plan;
-    html! {
-        @for r in &plan.references { p { "Reference of " (r.scene) ": " code { (r.file) } "." } }
-        @if let Some(cores) = cores(plan) { p { (cores) } }
-        pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) (samples(lookup)) (core(plan)) }
-        p {
-            "furnace " (env!("CARGO_PKG_VERSION")) ", seed " (plan.spec.seed) ". The same bytes for any number of threads. "
-            a href="results.csv" { "results.csv" } ", "
-            @if plan.cells.iter().any(|cell| cell.traced) { a href="convergence.csv" { "convergence.csv" } ", " } a href="timing.csv" { "timing.csv" } ", "
-            a href="run.json" { "run.json" } "."
-        }
-    }
-}
-
-/// The option that makes the fast path sample; that of the file may be another.
-fn core(plan: &Plan) -> &'static str {
-    let is_fast = plan.cells.iter().any(|cell| cell.core == Core::Fast);
-    if is_fast { " --core fast" } else { "" }
-}
-
-/// Which cells the fast path has sampled, if any.
-fn cores(plan: &Plan) -> Option<String> {
-    let fast = plan.cells.iter().filter(|cell| cell.core == Core::Fast).count();
-    let all = plan.cells.len();
-    let which = if fast == all { "All cells were".to_owned() } else { format!("{fast} of {all} cells were") };
-    let how = "sampled by the fast path: single precision, sixteen paths side by side";
-    let rest = if fast == all { "." } else { "; the others by the textbook, in double precision." };
-    (fast > 0).then(|| format!("{which} {how}{rest}"))
-}
-
-/// The option that gives all cells the samples that they have, where the file would not.
-fn samples(lookup: &Lookup<'_>) -> String {
-    let (plan, spec) = (lookup.plan, &lookup.plan.spec);
-    let first = plan.cells[0].samples;
-    let as_written = spec.grid.0.iter().all(|grid| grid.samples.unwrap_or(spec.samples) == first);
-    let alike = plan.cells.iter().all(|cell| cell.samples == first);
-    if alike && !as_written { format!(" --samples {first}") } else { String::new() }
 }

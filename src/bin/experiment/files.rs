@@ -67,7 +67,12 @@ impl Source {
 
     /// Where its results go.
     pub fn report_folder(&self, options: &Options) -> PathBuf {
-        options.out.clone().unwrap_or_else(|| self.root.join("reports")).join(&self.name)
+        self.reports(options).join(&self.name)
+    }
+
+    /// Where the results of all experiments go.
+    pub fn reports(&self, options: &Options) -> PathBuf {
+        options.out.clone().unwrap_or_else(|| self.root.join("reports"))
     }
 }
 

@@ -6,6 +6,7 @@ mod export;
 mod files;
 mod plans;
 mod progress;
+mod provenance;
 mod reference;
 mod render;
 mod run;

@@ -3,10 +3,11 @@
 use crate::args::{Format, Options};
 use crate::files::{self, Source};
 use crate::progress::Progress;
-use crate::{HELD, INTERRUPTED, NOT_HELD, claims, study};
+use crate::{HELD, INTERRUPTED, NOT_HELD, claims, provenance, study};
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
-use furnace::report::{self, Lookup, answer, table, terminal};
+use furnace::report::run::Run;
+use furnace::report::{self, Lookup, answer, overview, terminal};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -53,11 +54,11 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
     }
     let folder = source.report_folder(options);
     let store = Store::open(&folder)?;
+    let mut run = provenance::begin(source, plan, options);
     let (cells, seconds) = sample(plan, options, stop)?;
+    run.seconds.clone_from(&seconds);
     let rows = verdict::rows(plan, &cells);
-    store.write("timing.csv", &table::timing(plan, &cells, &seconds, &rows))?;
-    store.write("run.json", provenance(source, plan).as_bytes())?;
-    report::write(plan, &cells, &rows, &store, None)?;
+    report::write(plan, &cells, &rows, &run, &store, None)?;
     let interrupted = cells.iter().any(Option::is_none);
     let finished = cells.iter().filter(|cell| cell.is_some()).count();
     store.write_cells(&Stored {
@@ -72,6 +73,7 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
     })?;
     let partial = format!("{}-interrupted", source.name);
     let folder = store.publish(interrupted.then_some(partial.as_str()))?;
+    overview::write(&source.reports(options))?;
     print(plan, &rows, &folder, options);
     if interrupted {
         eprintln!(
@@ -139,44 +141,25 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
     println!("\nThe page: {}", page.display());
 }
 
-pub fn provenance(source: &Source, plan: &Plan) -> String {
-    let git = std::process::Command::new("git").args(["rev-parse", "HEAD"]).output();
-    let commit = git.ok().filter(|out| out.status.success());
-    let commit = commit.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned());
-    let object = serde_json::json!({
-        "experiment": source.name,
-        "spec": source.text,
-        "seed": plan.spec.seed,
-        "version": env!("CARGO_PKG_VERSION"),
-        "commit": commit,
-        "machine": { "architecture": std::env::consts::ARCH, "system": std::env::consts::OS,
-            "cores": std::thread::available_parallelism().map_or(0, usize::from) },
-    });
-    serde_json::to_string_pretty(&object).expect("a JSON value has a text") + "\n"
-}
-
 /// Rebuilds the reports of stored runs.
 pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
     let mut worst = HELD;
     for name in names {
         let source = Source::read(name, options)?;
         let mut plan = source.plan(options)?;
-        let folder = source.report_folder(options);
         if plan.spec.seeds.is_some() {
-            worst = worst.max(study::report(&plan, &folder, options)?);
+            worst = worst.max(study::report(&source, &plan, options)?);
             continue;
         }
+        let folder = source.report_folder(options);
         let stored = store::load(&folder, &mut plan)?;
         let rows = verdict::rows(&plan, &stored.cells);
         let store = Store::open(&folder)?;
-        for file in ["timing.csv", "run.json"] {
-            let path = folder.join(file);
-            let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
-            store.write(file, &text)?;
-        }
-        report::write(&plan, &stored.cells, &rows, &store, Some(&folder))?;
+        let run = Run::read(&folder)?;
+        report::write(&plan, &stored.cells, &rows, &run, &store, Some(&folder))?;
         store.write_cells(&stored)?;
         let folder = store.publish(None)?;
+        overview::write(&source.reports(options))?;
         print(&plan, &rows, &folder, options);
         worst = worst.max(status(&plan, &rows));
     }

@@ -3,12 +3,15 @@
 use crate::args::{Format, Options};
 use crate::files::Source;
 use crate::progress::Progress;
-use crate::run::{pool, provenance};
-use crate::{HELD, INTERRUPTED, NOT_HELD};
+use crate::run::pool;
+use crate::{HELD, INTERRUPTED, NOT_HELD, provenance};
 use furnace::experiment::store::Store;
 use furnace::experiment::study::{Detection, detect};
 use furnace::experiment::{Error, Plan};
+use furnace::report::overview::{self, Summary};
+use furnace::report::run::{self, Run};
 use furnace::report::study::{self, Studied};
+use furnace::stats::Verdict;
 use furnace::stats::nulls::NullRow;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -30,21 +33,23 @@ const STUDY: &str = "study.json";
 /// Runs a study.
 pub fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
     let store = Store::open(&source.report_folder(options))?;
-    let (outcome, timing) = sample(plan, options, stop)?;
+    let mut run = provenance::begin(source, plan, options);
+    let (outcome, timing, seconds) = sample(plan, options, stop)?;
+    run.seconds = seconds;
     let interrupted = !outcome.whole;
     store.write("timing.csv", timing.as_bytes())?;
-    store.write("run.json", provenance(source, plan).as_bytes())?;
     store.write(STUDY, &serde_json::to_vec(&outcome).expect("counts have a JSON form"))?;
-    let held = write(plan, &outcome, &store)?;
+    let held = write(plan, &outcome, &run, &store)?;
     let partial = format!("{}-interrupted", source.name);
     let folder = store.publish(interrupted.then_some(partial.as_str()))?;
+    overview::write(&source.reports(options))?;
     print(plan, &outcome, &folder, options);
     Ok(if interrupted { INTERRUPTED } else { held })
 }
 
 /// Judges a study without a report.
 pub fn claims(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
-    let (outcome, _) = sample(plan, options, stop)?;
+    let (outcome, ..) = sample(plan, options, stop)?;
     let studied = Studied::new(plan, &outcome.detections, &outcome.nulls);
     println!("{}:", plan.name);
     study::sentences(&studied).iter().for_each(|sentence| println!("    {sentence}"));
@@ -55,11 +60,12 @@ fn status(studied: &Studied<'_>) -> u8 {
     if studied.holds() { HELD } else { NOT_HELD }
 }
 
-/// What the runs of each cell have shown, and how long they took.
-fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Outcome, String), Error> {
+/// What the runs of each cell have shown, the text of `timing.csv`, and the seconds of each cell.
+fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Outcome, String, Vec<f64>), Error> {
     let pool = pool(options)?;
     let progress = Progress::new(plan, options.quiet || options.format == Format::Json);
     let mut detections = Vec::new();
+    let mut taken = Vec::new();
     let mut timing = String::from("cell,seconds\n");
     for (i, cell) in plan.cells.iter().enumerate() {
         let label = plan.label(cell);
@@ -67,6 +73,7 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Outcome,
         let start = Instant::now();
         let detection = pool.install(|| detect(plan, i, stop, &|rays| progress.rays(rays)));
         let seconds = start.elapsed().as_secs_f64();
+        taken.push(seconds);
         if detection.is_some() {
             progress.done(&label, i + 1, plan, seconds);
             timing.push_str(&format!("{i},{seconds:.4}\n"));
@@ -83,11 +90,13 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Outcome,
     }
     progress.finish();
     let whole = detections.iter().all(Option::is_some) && nulls.iter().all(Option::is_some);
-    Ok((Outcome { detections, nulls: nulls.into_iter().flatten().flatten().collect(), whole }, timing))
+    let nulls = nulls.into_iter().flatten().flatten().collect();
+    Ok((Outcome { detections, nulls, whole }, timing, taken))
 }
 
 /// Rebuilds the report of a stored study.
-pub fn report(plan: &Plan, folder: &Path, options: &Options) -> Result<u8, Error> {
+pub fn report(source: &Source, plan: &Plan, options: &Options) -> Result<u8, Error> {
+    let folder = source.report_folder(options);
     let path = folder.join(STUDY);
     let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
     let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", path.display()));
@@ -96,24 +105,37 @@ pub fn report(plan: &Plan, folder: &Path, options: &Options) -> Result<u8, Error
         let why = format!("{} holds other cells than are planned now; run the study again", path.display());
         return Err(Error::Refused(why));
     }
-    let store = Store::open(folder)?;
-    for file in ["timing.csv", "run.json", STUDY] {
+    let store = Store::open(&folder)?;
+    for file in ["timing.csv", STUDY] {
         let path = folder.join(file);
         store.write(file, &std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?)?;
     }
-    let held = write(plan, &outcome, &store)?;
+    let held = write(plan, &outcome, &Run::read(&folder)?, &store)?;
     let folder = store.publish(None)?;
+    overview::write(&source.reports(options))?;
     print(plan, &outcome, &folder, options);
     Ok(held)
 }
 
-fn write(plan: &Plan, outcome: &Outcome, store: &Store) -> Result<u8, Error> {
+fn write(plan: &Plan, outcome: &Outcome, run: &Run, store: &Store) -> Result<u8, Error> {
     let studied = Studied::new(plan, &outcome.detections, &outcome.nulls);
     if !outcome.nulls.is_empty() {
         store.write("nulls.csv", &study::nulls::csv(&outcome.nulls))?;
     }
     store.write("results.csv", &study::csv(&studied))?;
-    store.write("index.html", study::page(&studied, !outcome.whole).as_bytes())?;
+    let held = studied.holds();
+    let verdict = if held { Verdict::Pass } else { Verdict::Fail };
+    let summary = Summary {
+        experiment: plan.name.clone(),
+        question: plan.spec.question.clone(),
+        answer: study::sentences(&studied),
+        cells: plan.cells.len(),
+        verdicts: vec![(verdict, 1)],
+        figure: None,
+    };
+    store.write(overview::FILE, summary.text().as_bytes())?;
+    store.write(run::FILE, run.text().as_bytes())?;
+    store.write("index.html", study::page(&studied, !outcome.whole, run).as_bytes())?;
     Ok(status(&studied))
 }
 

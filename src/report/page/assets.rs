@@ -5,10 +5,22 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 /// Style sheets in their order.
-const STYLES: [&str; 1] = [include_str!("style/page.css")];
+const STYLES: [&str; 3] =
+    [include_str!("style/page.css"), include_str!("style/tables.css"), include_str!("style/plots.css")];
 
 /// Scripts in their order; each one defines functions and nothing else, the last one calls them.
-const SCRIPTS: [&str; 2] = [include_str!("script/data.js"), include_str!("script/main.js")];
+const SCRIPTS: [&str; 10] = [
+    include_str!("script/data.js"),
+    include_str!("script/scale.js"),
+    include_str!("script/chart.js"),
+    include_str!("script/series.js"),
+    include_str!("script/figure.js"),
+    include_str!("script/table.js"),
+    include_str!("script/details.js"),
+    include_str!("script/costs.js"),
+    include_str!("script/page.js"),
+    include_str!("script/main.js"),
+];
 
 /// The style sheet of a page, with the font of its figures.
 pub fn style() -> String {

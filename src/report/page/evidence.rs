@@ -1,51 +1,36 @@
-//! Whether the numbers of a cell can be trusted: guard lights, MCNP's ten checks, and what bets have won.
+//! Whether the numbers of a cell can be trusted: guard lights and MCNP's ten checks.
 
-use super::trajectory;
 use crate::experiment::Cell;
 use crate::experiment::row::CHANNELS;
-use crate::report::lookup::Lookup;
 use crate::report::number;
 use crate::stats::Moments;
 use crate::stats::tails::Light;
 use crate::stats::tally::{self, Check};
-use maud::{Markup, html};
+use serde_json::{Value, json};
 
 /// The channel whose checks are shown in full.
 const SHOWN: usize = 1;
 
-/// Guard, checks and bets of one cell.
-pub fn of(lookup: &Lookup<'_>, index: usize, cell: &Cell) -> Markup {
-    let guards = [0, 1, 2].map(|channel| cell.tails[channel].guard());
-    html! {
-        ul.guard { @for (channel, (light, why)) in CHANNELS.iter().zip(&guards) {
-            li { (lamp(*light)) " guard of " (channel) ": " (why) }
-        } }
-        (ten_checks(cell))
-        (trajectory::figure(lookup, index, cell))
-    }
-}
-
-/// A light as text with a colour.
-fn lamp(light: Light) -> Markup {
-    html! { span class={ "lamp " (light) } { (light) } }
-}
-
-/// One channel in full, and the worst of all.
-fn ten_checks(cell: &Cell) -> Markup {
+/// Guard of each channel as `[channel, light, why]`, the checks of one channel as `[light, name, what was found]`, and
+/// the worst of all.
+pub fn of(cell: &Cell) -> Value {
+    let guard = |channel: usize| {
+        let (light, why) = cell.tails[channel].guard();
+        [CHANNELS[channel].to_owned(), light.to_string(), why]
+    };
     let of_channel = |channel: usize| {
         let history: Vec<Moments> = cell.history.iter().map(|snapshot| snapshot.total[channel]).collect();
         tally::checks(&history, &cell.tails[channel], cell.cost.mean)
     };
     let all = [0, 1, 2].map(of_channel);
-    html! {
-        p.note {
-            "MCNP's ten checks of " (CHANNELS[SHOWN]) ", diagnostics: they decide nothing. Worst of the three channels: "
-            (worst(&all)) "."
-        }
-        ol.checks { @for check in &all[SHOWN] {
-            li { (lamp(check.light)) " " (check.name) ": " (check.text) }
-        } }
-    }
+    let guards = [0, 1, 2].map(guard);
+    let told = |check: &Check| [check.light.to_string(), check.name.to_string(), check.text.to_string()];
+    json!({
+        "guards": guards,
+        "channel": CHANNELS[SHOWN],
+        "checks": all[SHOWN].iter().map(told).collect::<Vec<_>>(),
+        "worst": worst(&all),
+    })
 }
 
 /// "7 green, 2 yellow (4 in R, 8 in G), 1 red (7 in R)".

@@ -30,7 +30,7 @@ pub fn claims(lookup: &Lookup<'_>) -> Markup {
         p {
             "PASS: shown to lie within the margin. FAIL: shown to differ. INCONCLUSIVE: neither, with these samples. "
             "INVALID: NaN, infinity, negative radiance, a sample beyond its bound, or a runaway walk. No verdict: nothing is claimed, or the test's "
-            "conditions do not hold (the numbers below say why). exact: decided by bets, whose error probability holds for "
+            "conditions do not hold (its row, opened, says why). exact: decided by bets, whose error probability holds for "
             "any number of samples; asymptotic: by a t test, whose error probability is approached as samples grow; "
             "comparison: theory and measurement are without noise. needed: samples after which all was decided, where "
             "that was before the last. All questions of a claim share its error probability by "
@@ -53,7 +53,7 @@ fn budget_row(share: &Share) -> Markup {
             } }
             td.n { (budget::plain(share.alpha)) }
             @if share.asked == 0 {
-                td colspan="6" { "nothing could be asked (the numbers below say why)" (invalid(share)) }
+                td colspan="6" { "nothing could be asked (its row, opened, says why)" (invalid(share)) }
             } @else {
                 td.n { (share.asked) (invalid(share)) } td.n { (format!("{:.1e}", share.level())) }
                 @for decided in share.decided { td.n { (decided) } }
@@ -67,15 +67,30 @@ fn invalid(share: &Share) -> Markup {
     html! { @if share.invalid > 0 { " (and " (share.invalid) " invalid)" } }
 }
 
-/// A line a cell.
-pub fn verdicts(lines: &[Line]) -> Markup {
+/// How many cells have which verdict, the worst first.
+pub fn counts(lines: &[(usize, Line)]) -> Markup {
+    let kinds =
+        [Some(Verdict::Invalid), Some(Verdict::Fail), Some(Verdict::Inconclusive), Some(Verdict::Pass), None];
+    let count = |kind: Option<Verdict>| lines.iter().filter(|(_, line)| line.verdict == kind).count();
     html! {
-        div.wide { table {
+        p.counts {
+            @for kind in kinds { @if count(kind) > 0 {
+                span { (badge(kind)) " " (count(kind)) @if kind.is_none() { " without a verdict" } } " "
+            } }
+            "of " (lines.len()) " cells"
+        }
+    }
+}
+
+/// A line a cell, which the page's script sorts, filters and opens.
+pub fn verdicts(lines: &[(usize, Line)]) -> Markup {
+    html! {
+        div.wide { table #cells {
             thead { tr {
                 th { "scene" } th { "estimator" } th { "rule" } th { "verdict" } th.n { "bias [%] R G B" }
                 th.n { "mde [%]" } th { "truth" } th.n { "rays" } th.n { "efficiency" } th.n { "samples" }
             } }
-            tbody { @for line in lines { tr {
+            tbody { @for (cell, line) in lines { tr data-cell=(cell) {
                 td { (line.scene) } td { (line.estimator) } td { (line.rule) }
                 td { (badge(line.verdict)) " " (by(&line.by)) @if !line.note.is_empty() { div.note { (line.note) } } }
                 td.n { (line.bias) } td.n { (line.mde) } td.truth { (line.truth) } td.n { (line.rays) }

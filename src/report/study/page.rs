@@ -3,14 +3,20 @@
 use super::{FOUND, Studied, nulls, sentences};
 use crate::experiment::study::{Detection, Instrument};
 use crate::faults::Fault;
-use crate::report::page::frame;
+use crate::report::page::{frame, repeat};
+use crate::report::run::Run;
 use crate::truth::Counted;
 use maud::{Markup, html};
 
 /// The page of a study.
-pub fn page(studied: &Studied<'_>, interrupted: bool) -> String {
+pub fn page(studied: &Studied<'_>, interrupted: bool, run: &Run) -> String {
     let plan = studied.plan;
     let seeds = plan.spec.seeds.unwrap_or(1);
+    let command = format!("cargo run --bin experiment -- {} --seed {}", plan.name, plan.spec.seed);
+    let files: &[&str] = match studied.nulls.is_empty() {
+        true => &["results.csv", "timing.csv", "run.json"],
+        false => &["results.csv", "nulls.csv", "timing.csv", "run.json"],
+    };
     let main = html! {
         section {
             h2 { "Answer" }
@@ -22,17 +28,9 @@ pub fn page(studied: &Studied<'_>, interrupted: bool) -> String {
             section { h2 { "Samples of known mean" } (nulls::table(studied.nulls)) }
         }
         (catalogue(studied))
-        section {
-            h2 { "How to repeat this" }
-            pre { "cargo run --bin experiment -- " (plan.name) " --seed " (plan.spec.seed) }
-            p {
-                a href="results.csv" { "results.csv" } ", "
-                @if !studied.nulls.is_empty() { a href="nulls.csv" { "nulls.csv" } ", " }
-                a href="timing.csv" { "timing.csv" } ", " a href="run.json" { "run.json" } "."
-            }
-        }
+        section { h2 { "How to repeat this" } (repeat(plan, &command, files)) }
     };
-    frame(plan, &main)
+    frame(plan, &main, run)
 }
 
 fn legend(seeds: u32) -> String {
