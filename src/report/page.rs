@@ -12,6 +12,7 @@ mod trajectory;
 mod verdicts;
 
 use super::lookup::Lookup;
+use super::pictures::Picture;
 use super::summary::{self, Line};
 use crate::experiment::{Cell, Core, Plan};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -22,18 +23,6 @@ pub struct Drawn {
     pub name: String,
     /// The SVG.
     pub svg: String,
-}
-
-/// An image as the page shows it.
-pub struct Picture {
-    /// What the cell is called.
-    pub label: String,
-    /// File name without extension.
-    pub name: String,
-    /// The PNG.
-    pub png: Vec<u8>,
-    /// The PNG of the signed difference from a stored image, if there is one.
-    pub map: Option<Vec<u8>>,
 }
 
 /// The whole page.
@@ -61,7 +50,7 @@ pub fn page(
         @if !figures.is_empty() {
             section { h2 { "Figures" } @for drawn in figures { (figure_block(drawn)) } }
         }
-        (images::section(pictures))
+        (images::section(lookup, pictures))
         section { h2 { "Numbers" } @for &cell in &finished { (numbers::numbers(lookup, cells, cell)) } }
         section { h2 { "How to repeat this" } (provenance(lookup)) }
     };

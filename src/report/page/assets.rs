@@ -5,10 +5,20 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 /// Style sheets in their order.
-const STYLES: [&str; 1] = [include_str!("style/page.css")];
+const STYLES: [&str; 2] = [include_str!("style/page.css"), include_str!("style/viewer.css")];
 
 /// Scripts in their order; each one defines functions and nothing else, the last one calls them.
-const SCRIPTS: [&str; 2] = [include_str!("script/data.js"), include_str!("script/main.js")];
+const SCRIPTS: [&str; 9] = [
+    include_str!("script/data.js"),
+    include_str!("script/viewer_data.js"),
+    include_str!("script/viewer_colours.js"),
+    include_str!("script/viewer_fields.js"),
+    include_str!("script/viewer_draw.js"),
+    include_str!("script/viewer_input.js"),
+    include_str!("script/viewer_controls.js"),
+    include_str!("script/viewer.js"),
+    include_str!("script/main.js"),
+];
 
 /// The style sheet of a page, with the font of its figures.
 pub fn style() -> String {
