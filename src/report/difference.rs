@@ -29,8 +29,8 @@ pub struct Difference {
 impl Difference {
     /// On the finest grid that both have; `None` for a picture that is not square.
     pub fn of(pixels: &Pixels, reference: &Reference) -> Option<Self> {
-        let width = pixels.width as usize;
-        (pixels.width == pixels.height).then(|| Self::on(gcd(width, reference.size), pixels, reference))
+        let (width, height) = (pixels.width as usize, pixels.height as usize);
+        common_blocks(width, height, reference).map(|blocks| Self::on(blocks, pixels, reference))
     }
 
     fn on(blocks: usize, pixels: &Pixels, reference: &Reference) -> Self {
@@ -67,6 +67,12 @@ impl Difference {
         let (bias, error) = (self.bias[block][channel], self.std_error[block][channel]);
         if bias == 0.0 { 0.0 } else { bias / error }
     }
+}
+
+/// Blocks along an edge of the finest grid that a picture and a reference both have; `None` for a picture that is not
+/// square.
+pub fn common_blocks(width: usize, height: usize, reference: &Reference) -> Option<usize> {
+    (width == height).then(|| gcd(width, reference.size))
 }
 
 /// Blocks along an edge of the map of a picture of `width` pixels.

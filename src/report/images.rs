@@ -46,11 +46,12 @@ pub(super) fn encode(width: u32, height: u32, bytes: &[u8]) -> Vec<u8> {
     file
 }
 
-/// The exposure at which all but the brightest hundredth of an image's pixels fit.
-pub fn exposure(pixels: &Pixels) -> f64 {
-    let mut brightest: Vec<f64> = pixels.mean.iter().map(|v| v.max_element()).collect();
+/// The exposure at which all but the brightest three hundredths of an image's pixels fit, given each pixel's brightest
+/// channel; what is not finite fits at none.
+pub fn exposure(brightest: impl Iterator<Item = f64>) -> f64 {
+    let mut brightest: Vec<f64> = brightest.filter(|v| v.is_finite()).collect();
     brightest.sort_by(f64::total_cmp);
-    let high = brightest[(brightest.len() * 97 / 100).min(brightest.len() - 1)];
+    let high = brightest.get(brightest.len() * 97 / 100).copied().unwrap_or(0.0);
     if high > 0.0 { 0.9 / high } else { 1.0 }
 }
 

@@ -21,6 +21,7 @@ pub use verdicts::badge;
 use super::costs::Cost;
 use super::figure::Figure;
 use super::lookup::Lookup;
+use super::pictures::Picture;
 use super::run::Run;
 use super::summary::{self, Line};
 use crate::experiment::{Cell, Plan};
@@ -33,18 +34,6 @@ pub struct Drawn {
     pub name: String,
     /// What it shows.
     pub figure: Figure,
-}
-
-/// An image as the page shows it.
-pub struct Picture {
-    /// What the cell is called.
-    pub label: String,
-    /// File name without extension.
-    pub name: String,
-    /// The PNG.
-    pub png: Vec<u8>,
-    /// The PNG of the signed difference from a stored image, if there is one.
-    pub map: Option<Vec<u8>>,
 }
 
 /// What a page is made of.
@@ -91,7 +80,7 @@ pub fn page(content: &Content<'_>) -> String {
         (faults::section(lookup))
         (costs::section(lookup, content.costs))
         (figures::section(figures))
-        (images::section(content.pictures))
+        (images::section(lookup, content.pictures))
         section #repeat { h2 { "How to repeat this" } (provenance::section(lookup)) }
         (packed::json("data", &data))
     };

@@ -70,6 +70,14 @@ pub enum BadReference {
         /// Pixels along each edge of the image that is to be compared.
         image: usize,
     },
+    /// A picture of another size than the scene's.
+    #[error("it has {} x {} pixels; the scene's image has {} x {}", .has.0, .has.1, .scene.0, .scene.1)]
+    Size {
+        /// Pixels from left to right and from top to bottom.
+        has: (usize, usize),
+        /// Those of the scene's image.
+        scene: (usize, usize),
+    },
     /// One of our own whose origin cannot be understood.
     #[error("what it says of its origin is of no use: {0}")]
     Provenance(String),
@@ -143,14 +151,27 @@ impl Layers {
 
     /// Reads a file that holds one square picture.
     pub fn read(bytes: &[u8]) -> Result<Self, BadReference> {
+        let is_square = |has: (usize, usize)| has.0 == has.1 && has.0 <= MOST;
+        Self::read_if(
+            bytes,
+            |has| if is_square(has) { Ok(()) } else { Err(BadReference::Shape(has.0, has.1)) },
+        )
+    }
+
+    /// Reads a file that holds one picture of as many pixels as the image of a scene.
+    pub fn read_sized(bytes: &[u8], scene: (usize, usize)) -> Result<Self, BadReference> {
+        Self::read_if(bytes, |has| if has == scene { Ok(()) } else { Err(BadReference::Size { has, scene }) })
+    }
+
+    fn read_if(
+        bytes: &[u8],
+        check: impl Fn((usize, usize)) -> Result<(), BadReference>,
+    ) -> Result<Self, BadReference> {
         let unreadable = |e: exr::error::Error| BadReference::Unreadable(e.to_string());
         // what the header promises is allocated before it is looked for
         let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(unreadable)?;
         for header in &meta.headers {
-            let (width, height) = (header.layer_size.width(), header.layer_size.height());
-            if width != height || width > MOST {
-                return Err(BadReference::Shape(width, height));
-            }
+            check((header.layer_size.width(), header.layer_size.height()))?;
         }
         let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers();
         let image = reader.all_attributes().from_buffered(Cursor::new(bytes)).map_err(unreadable)?;
@@ -184,6 +205,15 @@ impl Layers {
         if missing.is_empty() { Ok(()) } else { Err(BadReference::Missing(missing)) }
     }
 
+    /// A channel in single precision, whatever its values.
+    pub fn channel(&self, name: &str) -> Result<&[f32], BadReference> {
+        match self.find(name) {
+            None => Err(BadReference::Missing(vec![name.to_owned()])),
+            Some(FlatSamples::F32(values)) => Ok(values),
+            Some(_) => Err(BadReference::NotFloat(name.to_owned())),
+        }
+    }
+
     /// A channel whose values all hold what is `expected`.
     pub fn checked(
         &self,
@@ -191,9 +221,7 @@ impl Layers {
         expected: &'static str,
         holds: impl Fn(f64) -> bool,
     ) -> Result<Vec<f64>, BadReference> {
-        let samples = self.find(name).ok_or_else(|| BadReference::Missing(vec![name.to_owned()]))?;
-        let FlatSamples::F32(values) = samples else { return Err(BadReference::NotFloat(name.to_owned())) };
-        let values: Vec<f64> = values.iter().map(|&v| f64::from(v)).collect();
+        let values: Vec<f64> = self.channel(name)?.iter().map(|&v| f64::from(v)).collect();
         match values.iter().position(|&v| !holds(v)) {
             None => Ok(values),
             Some(i) => {

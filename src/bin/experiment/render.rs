@@ -55,7 +55,7 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         .and_then(|bytes| std::fs::write(&args.output, bytes))
         .map_err(|e| Error::io("cannot write", &args.output, e))?;
     let preview = args.output.with_extension("png");
-    let png = images::png(&cell.pixels, images::exposure(&cell.pixels));
+    let png = images::png(&cell.pixels, images::exposure(cell.pixels.mean.iter().map(|v| v.max_element())));
     std::fs::write(&preview, png).map_err(|e| Error::io("cannot write", &preview, e))?;
     println!("{} and {}", args.output.display(), preview.display());
     Ok(HELD)

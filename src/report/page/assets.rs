@@ -5,11 +5,15 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 /// Style sheets in their order.
-const STYLES: [&str; 3] =
-    [include_str!("style/page.css"), include_str!("style/tables.css"), include_str!("style/plots.css")];
+const STYLES: [&str; 4] = [
+    include_str!("style/page.css"),
+    include_str!("style/tables.css"),
+    include_str!("style/plots.css"),
+    include_str!("style/viewer.css"),
+];
 
 /// Scripts in their order; each one defines functions and nothing else, the last one calls them.
-const SCRIPTS: [&str; 10] = [
+const SCRIPTS: [&str; 17] = [
     include_str!("script/data.js"),
     include_str!("script/scale.js"),
     include_str!("script/chart.js"),
@@ -19,6 +23,13 @@ const SCRIPTS: [&str; 10] = [
     include_str!("script/details.js"),
     include_str!("script/costs.js"),
     include_str!("script/page.js"),
+    include_str!("script/viewer_data.js"),
+    include_str!("script/viewer_colours.js"),
+    include_str!("script/viewer_fields.js"),
+    include_str!("script/viewer_draw.js"),
+    include_str!("script/viewer_input.js"),
+    include_str!("script/viewer_controls.js"),
+    include_str!("script/viewer.js"),
     include_str!("script/main.js"),
 ];
 

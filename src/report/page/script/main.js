@@ -20,5 +20,6 @@ document.addEventListener("DOMContentLoaded", async () => {
     }
   }
   document.querySelectorAll("table.matrix").forEach(sortable);
+  await viewer();
   document.body.dataset.ready = "yes"; // for tests: all is there
 });

@@ -10,7 +10,7 @@ function sortKey(cell) {
 }
 
 // Numbers before texts and emptiness last, whichever the direction.
-function compare(a, b, direction) {
+function inOrder(a, b, direction) {
   const missing = (v) => v === "" || Number.isNaN(v);
   if (missing(a) || missing(b)) return missing(a) - missing(b);
   if (typeof a === "number" && typeof b === "number") return direction * (a - b);
@@ -36,7 +36,7 @@ function sortable(table) {
       if (now === "none") rows.sort((a, b) => order.indexOf(a) - order.indexOf(b));
       else {
         const keys = new Map(rows.map((row) => [row, sortKey(row.cells[column])]));
-        rows.sort((a, b) => compare(keys.get(a), keys.get(b), now === "ascending" ? 1 : -1));
+        rows.sort((a, b) => inOrder(keys.get(a), keys.get(b), now === "ascending" ? 1 : -1));
       }
       body.append(...rows.flatMap((row) => (followers.has(row) ? [row, followers.get(row)] : [row])));
     });

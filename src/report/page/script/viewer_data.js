@@ -1,0 +1,80 @@
+// Pixels as the page carries them: means bit by bit, standard errors in codes. raster.rs writes them.
+
+// All pictures and references of the page; null where there are none.
+async function loadPictures() {
+  const data = await unpackJson("viewer-data");
+  if (!data) return null;
+  const raster = async (id, size) => unpackRaster(await unpack(id), size.width, size.height);
+  const rasters = (kind, list) => Promise.all(list.map((size, i) => raster(`viewer-${kind}-${i}`, size)));
+  const [pictures, references] = await Promise.all([
+    rasters("picture", data.pictures),
+    rasters("reference", data.references),
+  ]);
+  data.pictures.forEach((picture, i) => (picture.raster = pictures[i]));
+  return { ...data, references };
+}
+
+// Three channels of means and of their standard errors.
+function unpackRaster(bytes, width, height) {
+  const count = width * height;
+  const largest = new DataView(bytes.buffer, bytes.byteOffset).getFloat32(0, true);
+  const words = [0, 1, 2].map(() => new Uint32Array(count));
+  const codes = [0, 1, 2].map(() => new Uint8Array(count));
+  let at = 4;
+  words.forEach((word, c) => {
+    for (let shift = 0; shift < 32; shift += 8) {
+      for (let i = 0; i < count; i++) word[i] |= bytes[at++] << shift;
+    }
+    if (c > 0) for (let i = 0; i < count; i++) word[i] += words[c - 1][i];
+  });
+  codes.forEach((code, c) => {
+    for (let i = 0; i < count; i++) code[i] = bytes[at++] + (c > 0 ? codes[c - 1][i] : i > 0 ? code[i - 1] : 0);
+  });
+  const meaning = Float32Array.from({ length: 256 }, (_, code) => largest * 2 ** ((code - 254) / 12));
+  meaning[0] = 0;
+  meaning[255] = NaN;
+  return {
+    width,
+    height,
+    mean: words.map((word) => new Float32Array(word.buffer)),
+    error: codes.map((code) => Float32Array.from(code, (c) => meaning[c])),
+  };
+}
+
+// Means over equal blocks, so many across and down; pixels are independent.
+function inBlocks(raster, columns, rows) {
+  if (columns === raster.width && rows === raster.height) return raster;
+  const [w, h] = [raster.width / columns, raster.height / rows];
+  const average = (values, finish) => {
+    const sums = new Float64Array(columns * rows);
+    values.forEach((value, i) => {
+      const [x, y] = [Math.floor((i % raster.width) / w), Math.floor(Math.floor(i / raster.width) / h)];
+      sums[y * columns + x] += value;
+    });
+    return sums.map(finish);
+  };
+  return {
+    width: columns,
+    height: rows,
+    mean: raster.mean.map((m) => average(m, (sum) => sum / (w * h))),
+    error: raster.error.map((e) => average(Float64Array.from(e, (v) => v * v), (sum) => Math.sqrt(sum) / (w * h))),
+  };
+}
+
+function commonDivisor(a, b) {
+  return b === 0 ? a : commonDivisor(b, a % b);
+}
+
+const compared = new WeakMap();
+
+// Two rasters on the finest grid that both have.
+function compare(ours, theirs) {
+  if (!compared.has(ours)) compared.set(ours, new Map());
+  const known = compared.get(ours);
+  if (!known.has(theirs)) {
+    const width = commonDivisor(ours.width, theirs.width);
+    const height = commonDivisor(ours.height, theirs.height);
+    known.set(theirs, { width, height, ours: inBlocks(ours, width, height), theirs: inBlocks(theirs, width, height) });
+  }
+  return known.get(theirs);
+}

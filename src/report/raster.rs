@@ -1,0 +1,102 @@
+//! An image as its EXR file has it, and the bytes in which the page carries it.
+
+use super::{difference, images};
+use crate::truth::layers::{Layers, rgb_names};
+use crate::truth::{BadReference, Reference};
+
+/// Codes of standard errors to one doubling: neighbours differ by 6 %, so that a code is right to 3 %.
+pub const CODES: f64 = 12.0;
+
+/// The code of the largest standard error; 0 is that of 0, and those 21 doublings and more below the largest share code 1.
+const LARGEST: f64 = 254.0;
+
+/// The code of what is not finite.
+const UNKNOWN: u8 = 255;
+
+/// Means and standard errors of pixels: red, green, blue, each row by row from the top left [W m^-2 sr^-1].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Raster {
+    /// Pixels from left to right.
+    pub width: usize,
+    /// Pixels from top to bottom.
+    pub height: usize,
+    /// The mean of each pixel, bit by bit that of the file.
+    pub mean: [Vec<f32>; 3],
+    /// The standard error of each mean.
+    pub std_error: [Vec<f32>; 3],
+    /// Samples a pixel; 0 where the file does not say.
+    pub samples: u64,
+}
+
+impl Raster {
+    /// Reads what [`images::exr`] wrote of an image with `size` pixels across and down. Any value may be among them.
+    pub fn read(bytes: &[u8], size: (usize, usize)) -> Result<Self, BadReference> {
+        let layers = Layers::read_sized(bytes, size)?;
+        let samples = layers.channel("samples")?;
+        let error = |(&variance, &n): (&f32, &f32)| (f64::from(variance) / f64::from(n)).sqrt() as f32;
+        let (mut mean, mut std_error) = ([const { Vec::new() }; 3], [const { Vec::new() }; 3]);
+        for (c, (name, of)) in rgb_names("").iter().zip(rgb_names("variance.")).enumerate() {
+            mean[c] = layers.channel(name)?.to_vec();
+            std_error[c] = layers.channel(&of)?.iter().zip(samples).map(error).collect();
+        }
+        let samples = samples.first().map_or(0, |&n| n as u64);
+        Ok(Raster { width: size.0, height: size.1, mean, std_error, samples })
+    }
+
+    /// A reference on the finest grid that it shares with an image; `None` beside an image that is not square.
+    pub fn of_reference(reference: &Reference, (width, height): (usize, usize)) -> Option<Self> {
+        let blocks = difference::common_blocks(width, height, reference)?;
+        let stored: Vec<_> =
+            (0..blocks * blocks).map(|i| reference.tile(blocks, i % blocks, i / blocks)).collect();
+        let mean = [0, 1, 2].map(|c| stored.iter().map(|s| s.mean[c] as f32).collect());
+        let std_error = [0, 1, 2].map(|c| stored.iter().map(|s| s.std_error[c] as f32).collect());
+        Some(Raster { width: blocks, height: blocks, mean, std_error, samples: 0 })
+    }
+
+    /// The exposure that suits it, see [`images::exposure`].
+    pub fn exposure(&self) -> f64 {
+        let [r, g, b] = &self.mean;
+        images::exposure(r.iter().zip(g).zip(b).map(|((&r, &g), &b)| f64::from(r.max(g).max(b))))
+    }
+
+    /// The bytes that `viewer_data.js` reads, laid out to be compressed.
+    ///
+    /// First the largest finite standard error. Then the means: red, green less red, blue less green, as whole numbers
+    /// of 32 bits that wrap, each split into four planes from the lowest byte to the highest. Then the codes of the
+    /// standard errors: red, each less the one before it, green less red, blue less green, in bytes that wrap. A code c
+    /// stands for the largest times 2^((c - 254) / 12), 0 for 0, and 255 for what is not finite. All of it with the
+    /// lowest byte first.
+    pub fn packed(&self) -> Vec<u8> {
+        let finite = self.std_error.iter().flatten().copied().filter(|error| error.is_finite());
+        let largest = finite.fold(0.0_f32, f32::max);
+        let mut bytes = largest.to_le_bytes().to_vec();
+        for c in 0..3 {
+            let word = |i: usize| self.mean[c][i].to_bits();
+            let words = (0..self.mean[c].len()).map(|i| match c {
+                0 => word(i),
+                _ => word(i).wrapping_sub(self.mean[c - 1][i].to_bits()),
+            });
+            let words: Vec<[u8; 4]> = words.map(u32::to_le_bytes).collect();
+            (0..4).for_each(|plane| bytes.extend(words.iter().map(|word| word[plane])));
+        }
+        let codes =
+            [0, 1, 2].map(|c| self.std_error[c].iter().map(|&e| code(e, largest)).collect::<Vec<u8>>());
+        let before = |i: usize| if i == 0 { 0 } else { codes[0][i - 1] };
+        bytes.extend((0..codes[0].len()).map(|i| codes[0][i].wrapping_sub(before(i))));
+        for c in 1..3 {
+            bytes.extend(codes[c].iter().zip(&codes[c - 1]).map(|(code, other)| code.wrapping_sub(*other)));
+        }
+        bytes
+    }
+}
+
+fn code(error: f32, largest: f32) -> u8 {
+    if !error.is_finite() {
+        return UNKNOWN;
+    }
+    if error <= 0.0 {
+        return 0;
+    }
+    let doublings = libm::log2(f64::from(largest) / f64::from(error));
+    (LARGEST - CODES * doublings).round().max(1.0) as u8
+}
