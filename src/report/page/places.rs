@@ -32,7 +32,7 @@ fn one(lookup: &Lookup<'_>, place: &Place) -> Markup {
             h3 { (lookup.plan.label(&lookup.plan.cells[place.cell])) }
             ul { @for sentence in &place.sentences { li { (sentence) } } }
             @if let Some(map) = &place.tiles { (tiles(map)) }
-            pre { (place.replay) }
+            pre.command { (place.replay) }
         }
     }
 }

@@ -7,7 +7,8 @@ function figure(place, data, name) {
   const status = element("div", { class: "readout", role: "status" }, " ");
   const table = element("div", { class: "wide", hidden: true });
   const draw = () => {
-    panels.replaceChildren(...data.panels.map((panel, i) => drawnPanel(panel, i, state, data, status, draw)));
+    const room = place.clientWidth || 760;
+    panels.replaceChildren(...data.panels.map((panel, i) => drawnPanel(panel, i, { room, state, data, status, draw })));
     hide(panels, state.hidden);
   };
   const toggle = (label, button) => {
@@ -37,9 +38,10 @@ function figure(place, data, name) {
 }
 
 // One panel with the choices of its axes.
-function drawnPanel(panel, i, state, data, status, draw) {
+function drawnPanel(panel, i, { room, state, data, status, draw }) {
   const columns = Math.min(data.columns, data.panels.length);
-  const width = columns === 1 ? 760 : columns === 2 ? 580 : 410;
+  // letters keep their size on narrow screens: the panel gets narrower instead
+  const width = Math.min(columns === 1 ? 760 : columns === 2 ? 580 : 410, Math.max(300, room));
   const { svg, hits } = chart(panel, { ...state.log[i], width });
   svg.style.width = `${width}px`;
   readout(svg, hits, status, state);
@@ -47,7 +49,8 @@ function drawnPanel(panel, i, state, data, status, draw) {
     if (axis.categories.length) return null;
     const box = element("input", { type: "checkbox", onchange: () => { state.log[i][key] = box.checked; draw(); } });
     box.checked = state.log[i][key];
-    return element("label", {}, box, ` log ${key === "logX" ? "x" : "y"}`);
+    const which = panel.lying ? "" : key === "logX" ? " x" : " y";
+    return element("label", {}, box, ` log${which}`);
   };
   return element("div", { class: "panel" }, svg, element("div", { class: "axes" }, choice(panel.x, "logX"), choice(panel.y, "logY")));
 }

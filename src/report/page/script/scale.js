@@ -37,7 +37,7 @@ function ticks([low, high], log, most) {
   const inside = (v) => v >= low - 1e-12 * Math.abs(high) && v <= high + 1e-12 * Math.abs(high);
   if (log) {
     const [from, to] = [Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
-    const factors = to - from <= 2 ? [1, 2, 5] : [1];
+    const factors = high / low < 200 ? [1, 2, 5] : [1];
     const step = Math.max(1, Math.ceil((to - from) / most));
     const all = [];
     for (let power = from; power <= to; power += step) for (const m of factors) all.push(m * 10 ** power);
