@@ -16,6 +16,9 @@ use std::time::{Duration, Instant};
 /// All that happens to a page happens within this, so that no test hangs.
 const LIFETIME: Duration = Duration::from_secs(45);
 
+/// What is waited for comes within this, or never.
+const PATIENCE: Duration = Duration::from_secs(15);
+
 /// One page in a browser, which shares no storage with others. What it is asked to do and cannot fails the test.
 pub struct Page {
     browser: Arc<Browser>,
@@ -62,9 +65,13 @@ impl Page {
     /// Waits until an expression is true.
     pub fn wait_for(&self, expression: &str) {
         let is_true = format!("!!({expression})");
+        let end = Instant::now() + PATIENCE;
         while self.js(&is_true) != true {
-            let in_time = Instant::now() < self.deadline;
-            assert!(in_time, "never came true: {expression}\ncomplaints: {:?}", self.complaints());
+            assert!(
+                Instant::now() < end,
+                "never came true: {expression}\ncomplaints: {:?}",
+                self.complaints()
+            );
             thread::sleep(Duration::from_millis(5));
         }
     }
