@@ -13,6 +13,7 @@ pub mod figure;
 mod forest;
 pub mod images;
 pub mod lookup;
+pub mod metrics;
 mod mistakes;
 pub mod mitsuba;
 mod number;
