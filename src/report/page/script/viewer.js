@@ -63,6 +63,7 @@ function enterScene(v, scene) {
 function update(v) {
   const { state, root } = v;
   draw(v);
+  prepare(v);
   showState(v);
   Object.assign(root.dataset, {
     scene: state.scene,

@@ -85,7 +85,7 @@ function buildControls(v) {
       "details",
       {},
       element("summary", {}, "Keys, while a part of the viewer has the focus"),
-      element("dl", {}, HELP.map(([keys, what]) => [element("dt", {}, keys), element("dd", {}, what)])),
+      element("dl", {}, HELP.flatMap(([keys, what]) => [element("dt", {}, keys), element("dd", {}, what)])),
     ),
   );
 }
