@@ -95,7 +95,6 @@ fn data(lookup: &Lookup<'_>, pictures: &[Picture]) -> Markup {
 fn described_as(lookup: &Lookup<'_>, picture: &Picture, reference: Option<usize>) -> Value {
     let cell = &lookup.plan.cells[picture.cell];
     json!({
-        "label": label(lookup, picture),
         "short": format!("{} {}", cell.estimator_label, lookup.plan.rule_label(cell)),
         "scene": cell.scene_label,
         "name": picture.name,

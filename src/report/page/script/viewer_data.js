@@ -1,9 +1,8 @@
 // Pixels as the page carries them: means bit by bit, standard errors in codes. raster.rs writes them.
 
-// All pictures and references of the page; null where there are none.
+// All pictures and references of the page.
 async function loadPictures() {
   const data = await unpackJson("viewer-data");
-  if (!data) return null;
   const raster = async (id, size) => unpackRaster(await unpack(id), size.width, size.height);
   const rasters = (kind, list) => Promise.all(list.map((size, i) => raster(`viewer-${kind}-${i}`, size)));
   const [pictures, references] = await Promise.all([
