@@ -7,11 +7,11 @@ use crate::truth::{BadReference, Reference};
 /// Codes of standard errors to one doubling: neighbours differ by 6 %, so that a code is right to 3 %.
 pub const CODES: f64 = 12.0;
 
-/// The code of the largest standard error; 0 is that of 0, and those 21 doublings and more below the largest share code 1.
-const LARGEST: f64 = 254.0;
+/// The code of a standard error of 1; smaller ones down to the smallest number of single precision have codes from 1 on.
+const ONE: f64 = 1801.0;
 
 /// The code of what is not finite.
-const UNKNOWN: u8 = 255;
+const UNKNOWN: u16 = u16::MAX;
 
 /// Means and standard errors of pixels: red, green, blue, each row by row from the top left [W m^-2 sr^-1].
 #[derive(Clone, Debug, PartialEq)]
@@ -61,42 +61,45 @@ impl Raster {
 
     /// The bytes that `viewer_data.js` reads, laid out to be compressed.
     ///
-    /// First the largest finite standard error. Then the means: red, green less red, blue less green, as whole numbers
-    /// of 32 bits that wrap, each split into four planes from the lowest byte to the highest. Then the codes of the
-    /// standard errors: red, each less the one before it, green less red, blue less green, in bytes that wrap. A code c
-    /// stands for the largest times 2^((c - 254) / 12), 0 for 0, and 255 for what is not finite. All of it with the
-    /// lowest byte first.
+    /// First the means: red, green less red, blue less green, as whole numbers of 32 bits that wrap, each split into four
+    /// planes from the lowest byte to the highest. Then the codes of the standard errors as whole numbers of 16 bits: red,
+    /// each less the one before it, green less red, blue less green, folded so that small differences of either sign are
+    /// small numbers (0, -1, 1, -2 become 0, 1, 2, 3); the lower bytes of all three, then the upper ones. A code c stands
+    /// for 2^((c - 1801) / 12), 0 for 0, and 65535 for what is not finite.
     pub fn packed(&self) -> Vec<u8> {
-        let finite = self.std_error.iter().flatten().copied().filter(|error| error.is_finite());
-        let largest = finite.fold(0.0_f32, f32::max);
-        let mut bytes = largest.to_le_bytes().to_vec();
+        let mut bytes = Vec::new();
         for c in 0..3 {
-            let word = |i: usize| self.mean[c][i].to_bits();
-            let words = (0..self.mean[c].len()).map(|i| match c {
-                0 => word(i),
-                _ => word(i).wrapping_sub(self.mean[c - 1][i].to_bits()),
-            });
+            let before = |i: usize| if c == 0 { 0 } else { self.mean[c - 1][i].to_bits() };
+            let words = self.mean[c].iter().enumerate().map(|(i, v)| v.to_bits().wrapping_sub(before(i)));
             let words: Vec<[u8; 4]> = words.map(u32::to_le_bytes).collect();
             (0..4).for_each(|plane| bytes.extend(words.iter().map(|word| word[plane])));
         }
         let codes =
-            [0, 1, 2].map(|c| self.std_error[c].iter().map(|&e| code(e, largest)).collect::<Vec<u8>>());
-        let before = |i: usize| if i == 0 { 0 } else { codes[0][i - 1] };
-        bytes.extend((0..codes[0].len()).map(|i| codes[0][i].wrapping_sub(before(i))));
-        for c in 1..3 {
-            bytes.extend(codes[c].iter().zip(&codes[c - 1]).map(|(code, other)| code.wrapping_sub(*other)));
+            [0, 1, 2].map(|c| self.std_error[c].iter().map(|&error| code(error)).collect::<Vec<u16>>());
+        let mut folded = Vec::new();
+        for c in 0..3 {
+            let before = |i: usize| match (c, i) {
+                (0, 0) => 0,
+                (0, _) => codes[0][i - 1],
+                _ => codes[c - 1][i],
+            };
+            folded.extend(codes[c].iter().enumerate().map(|(i, code)| fold(code.wrapping_sub(before(i)))));
         }
+        (0..2).for_each(|plane| bytes.extend(folded.iter().map(|word: &u16| word.to_le_bytes()[plane])));
         bytes
     }
 }
 
-fn code(error: f32, largest: f32) -> u8 {
-    if !error.is_finite() {
-        return UNKNOWN;
+fn code(error: f32) -> u16 {
+    match error {
+        _ if !error.is_finite() => UNKNOWN,
+        _ if error <= 0.0 => 0,
+        _ => (ONE + CODES * libm::log2(f64::from(error))).round() as u16,
     }
-    if error <= 0.0 {
-        return 0;
-    }
-    let doublings = libm::log2(f64::from(largest) / f64::from(error));
-    (LARGEST - CODES * doublings).round().max(1.0) as u8
+}
+
+/// Of a difference that wraps.
+fn fold(difference: u16) -> u16 {
+    let signed = difference as i16;
+    ((signed << 1) ^ (signed >> 15)) as u16
 }

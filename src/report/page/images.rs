@@ -34,7 +34,7 @@ fn explanation(pictures: &[Picture]) -> Markup {
             p {
                 "Differences in standard errors are those of the picture and of the reference together, pixel by pixel or, "
                 "where the reference is coarser, block by block: white is none, blue means too dark by " (FULL) " standard "
-                "errors or more, orange too bright. Noise alone colours one block of 16,000 fully, more where few paths "
+                "errors or more, orange too bright. Noise alone colours one block of 16,000 fully in each channel, more where few paths "
                 "find light: there the standard error is itself not well known, and most often too small. The files that "
                 "end in " code { (MAP) } " show the same in blocks: red, green, and below them blue."
             }
@@ -95,7 +95,6 @@ fn data(lookup: &Lookup<'_>, pictures: &[Picture]) -> Markup {
 fn described_as(lookup: &Lookup<'_>, picture: &Picture, reference: Option<usize>) -> Value {
     let cell = &lookup.plan.cells[picture.cell];
     json!({
-        "label": label(lookup, picture),
         "short": format!("{} {}", cell.estimator_label, lookup.plan.rule_label(cell)),
         "scene": cell.scene_label,
         "name": picture.name,

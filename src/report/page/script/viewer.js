@@ -2,8 +2,16 @@
 
 async function viewer() {
   const root = document.getElementById("viewer");
-  const data = root && (await loadPictures());
-  if (!data) return;
+  if (!root) return;
+  try {
+    startViewer(root, await loadPictures());
+  } catch (error) {
+    root.replaceChildren(element("p", {}, `The pictures cannot be shown here (${error}); they lie beside this page as EXR and PNG files.`));
+    console.error(error);
+  }
+}
+
+function startViewer(root, data) {
   const v = { root, data, scenes: [...new Set(data.pictures.map((p) => p.scene))], controls: {}, cache: new Map() };
   v.state = { view: "radiance", channel: "RGB", layout: "single", exposure: 0, cross: null, pointed: null };
   v.update = () => update(v);
@@ -20,7 +28,7 @@ async function viewer() {
     v.update();
     v.read();
   };
-  // for tests and for the console: the values behind a pixel of a picture, by its name or its number on the page
+  // for the console and for tests: the values behind a pixel of a picture, by its name or its number on the page
   root.pixel = (which, x, y) => pixelOf(v, which, x, y);
   buildControls(v);
   listenToPointers(v);
@@ -63,6 +71,7 @@ function enterScene(v, scene) {
 function update(v) {
   const { state, root } = v;
   draw(v);
+  prepare(v);
   showState(v);
   Object.assign(root.dataset, {
     scene: state.scene,

@@ -71,21 +71,21 @@ function paintRadiance(raster, weights, factor) {
     if (!Number.isFinite(r[i] + g[i] + b[i])) pixels[i] = marked;
     else if (grey) pixels[i] = (255 << 24) | (srgbLevel(grey[i] * factor) * 0x010101);
     else {
-      const [high, middle, low] = [srgbLevel(b[i] * factor), srgbLevel(g[i] * factor), srgbLevel(r[i] * factor)];
-      pixels[i] = (255 << 24) | (high << 16) | (middle << 8) | low;
+      const [red, green, blue] = [srgbLevel(r[i] * factor), srgbLevel(g[i] * factor), srgbLevel(b[i] * factor)];
+      pixels[i] = (255 << 24) | (blue << 16) | (green << 8) | red;
     }
   }
   return image;
 }
 
 // Image data of numbers, whose colour is full at `limit`.
-function paintField(field, scale, limit) {
-  const image = new ImageData(field.width, field.height);
+function paintField({ width, height, values }, scale, limit) {
+  const image = new ImageData(width, height);
   const pixels = new Uint32Array(image.data.buffer);
   const { table, place } = TABLES[scale];
   const [marked, last] = [word(NOT_FINITE), table.length - 1];
   for (let i = 0; i < pixels.length; i++) {
-    const t = field.values[i] / limit;
+    const t = values[i] / limit;
     pixels[i] = Number.isNaN(t) ? marked : table[Math.min(Math.max(Math.round(place(t)), 0), last)];
   }
   return image;

@@ -85,7 +85,7 @@ function buildControls(v) {
       "details",
       {},
       element("summary", {}, "Keys, while a part of the viewer has the focus"),
-      element("dl", {}, HELP.map(([keys, what]) => [element("dt", {}, keys), element("dd", {}, what)])),
+      element("dl", {}, HELP.flatMap(([keys, what]) => [element("dt", {}, keys), element("dd", {}, what)])),
     ),
   );
 }
@@ -136,15 +136,24 @@ function wordsOf(v, item) {
   if (VIEWS[state.view].compares && view === "radiance") words.unshift("This is what the others are compared with.");
   if (view === "tiles" && against) {
     const byRows = item.tiles && against.isReference && state.channel !== "luminance";
-    if (byRows) words.push(`${item.tiles.words} Framed: told to be wrong, at most ${100 * v.data.rate} % of them falsely.`);
+    if (byRows) words.push(tileWords(item.tiles, v.data.rate));
     else words.push("By the pixels of both.");
   }
   if (VIEWS[view].fixed && against && !against.isReference && item.paired && against.paired) {
     words.push("Both share their random numbers, so that they differ by less than independent ones would.");
   }
   if (VIEWS[view].compares && !against) words.push("There is nothing to compare with: choose another picture.");
+  if (item.samples > 0) words.push(`${item.samples} samples a pixel.`);
   if (item.notFinite > 0) words.push(`Magenta: not a finite number (${item.notFinite} pixels).`);
   return words.join(" ");
+}
+
+function tileWords({ words, claimed }, rate) {
+  const source = claimed ? "the claim on tiles" : "normal distributions, as nothing is claimed of tiles";
+  return (
+    `${words} Framed: told to be wrong, at most ${100 * rate} % of them falsely, by the procedure of Benjamini and ` +
+    `Hochberg (1995) with p-values of ${source}.`
+  );
 }
 
 // The same for those who cannot see the canvas.

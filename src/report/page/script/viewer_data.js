@@ -1,9 +1,8 @@
 // Pixels as the page carries them: means bit by bit, standard errors in codes. raster.rs writes them.
 
-// All pictures and references of the page; null where there are none.
+// All pictures and references of the page.
 async function loadPictures() {
   const data = await unpackJson("viewer-data");
-  if (!data) return null;
   const raster = async (id, size) => unpackRaster(await unpack(id), size.width, size.height);
   const rasters = (kind, list) => Promise.all(list.map((size, i) => raster(`viewer-${kind}-${i}`, size)));
   const [pictures, references] = await Promise.all([
@@ -17,29 +16,36 @@ async function loadPictures() {
 // Three channels of means and of their standard errors.
 function unpackRaster(bytes, width, height) {
   const count = width * height;
-  const largest = new DataView(bytes.buffer, bytes.byteOffset).getFloat32(0, true);
-  const words = [0, 1, 2].map(() => new Uint32Array(count));
-  const codes = [0, 1, 2].map(() => new Uint8Array(count));
-  let at = 4;
-  words.forEach((word, c) => {
+  const mean = [0, 1, 2].map(() => new Uint32Array(count));
+  const codes = [0, 1, 2].map(() => new Uint16Array(count));
+  let at = 0;
+  mean.forEach((word, c) => {
     for (let shift = 0; shift < 32; shift += 8) {
       for (let i = 0; i < count; i++) word[i] |= bytes[at++] << shift;
     }
-    if (c > 0) for (let i = 0; i < count; i++) word[i] += words[c - 1][i];
+    if (c > 0) for (let i = 0; i < count; i++) word[i] += mean[c - 1][i];
   });
+  for (const shift of [0, 8]) {
+    for (const code of codes) for (let i = 0; i < count; i++) code[i] |= bytes[at++] << shift;
+  }
   codes.forEach((code, c) => {
-    for (let i = 0; i < count; i++) code[i] = bytes[at++] + (c > 0 ? codes[c - 1][i] : i > 0 ? code[i - 1] : 0);
+    for (let i = 0; i < count; i++) {
+      const difference = (code[i] >>> 1) ^ -(code[i] & 1);
+      code[i] = difference + (c > 0 ? codes[c - 1][i] : i > 0 ? code[i - 1] : 0);
+    }
   });
-  const meaning = Float32Array.from({ length: 256 }, (_, code) => largest * 2 ** ((code - 254) / 12));
-  meaning[0] = 0;
-  meaning[255] = NaN;
   return {
     width,
     height,
-    mean: words.map((word) => new Float32Array(word.buffer)),
-    error: codes.map((code) => Float32Array.from(code, (c) => meaning[c])),
+    mean: mean.map((word) => new Float32Array(word.buffer)),
+    error: codes.map((code) => Float32Array.from(code, (c) => STANDARD_ERRORS[c])),
   };
 }
+
+// What the code of a standard error stands for.
+const STANDARD_ERRORS = Float32Array.from({ length: 65536 }, (_, code) => 2 ** ((code - 1801) / 12));
+STANDARD_ERRORS[0] = 0;
+STANDARD_ERRORS[65535] = NaN;
 
 // Means over equal blocks, so many across and down; pixels are independent.
 function inBlocks(raster, columns, rows) {

@@ -34,7 +34,7 @@ function cached(v, key, make) {
   const known = v.cache.get(key) ?? make();
   v.cache.delete(key);
   v.cache.set(key, known);
-  if (v.cache.size > 96) v.cache.delete(v.cache.keys().next().value);
+  if (v.cache.size > 64 + 4 * v.items.length) v.cache.delete(v.cache.keys().next().value);
   return known;
 }
 
@@ -64,6 +64,17 @@ function bitmapOf(v, item) {
     canvas.getContext("2d").putImageData(image, 0, 0);
     return { made: { canvas, width: image.width, height: image.height, colours: image.data } };
   }).made;
+}
+
+// Makes what flipping will show, one picture at a time, while nothing else is to be done.
+function prepare(v) {
+  clearTimeout(v.preparing);
+  const next = (i) => {
+    if (i === v.items.length) return;
+    bitmapOf(v, v.items[i]);
+    v.preparing = setTimeout(next, 0, i + 1);
+  };
+  v.preparing = setTimeout(next, 20, 0);
 }
 
 // The items on the canvas.

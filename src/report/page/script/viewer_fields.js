@@ -30,11 +30,11 @@ const VIEWS = {
 const TILES = 4;
 
 // A number a pixel; NaN where one that it is made of is not finite.
-function weighted(channels, weights) {
-  const made = new Float64Array(channels[0].length);
+function weighted([r, g, b], [ofR, ofG, ofB]) {
+  const made = new Float64Array(r.length);
   for (let i = 0; i < made.length; i++) {
-    let sum = 0;
-    for (let c = 0; c < 3; c++) if (weights[c] !== 0) sum += weights[c] * channels[c][i];
+    // what has no weight must not matter, infinite or not
+    const sum = (ofR && ofR * r[i]) + (ofG && ofG * g[i]) + (ofB && ofB * b[i]);
     made[i] = Number.isFinite(sum) ? sum : NaN;
   }
   return made;
@@ -42,34 +42,39 @@ function weighted(channels, weights) {
 
 // Deviation in standard errors of both; 0 where nothing differs. A right value without noise makes it infinite.
 function inErrors(difference, ours, theirs) {
-  return difference === 0 ? 0 : difference / Math.hypot(ours, theirs);
+  return difference === 0 ? 0 : difference / Math.sqrt(ours * ours + theirs * theirs);
 }
 
-// Deviations of one channel, or of a sum of channels whose errors are added, as channels share their paths.
-function deviations({ ours, theirs }, weights) {
-  const [a, b] = [weighted(ours.mean, weights), weighted(theirs.mean, weights)];
-  const [ea, eb] = [weighted(ours.error, weights), weighted(theirs.error, weights)];
-  return a.map((value, i) => inErrors(value - b[i], ea[i], eb[i]));
+// Deviations between means `a` and `b` whose standard errors are given; NaN where they cannot be told.
+function deviations(a, b, errorOfA, errorOfB) {
+  const made = new Float64Array(a.length);
+  for (let i = 0; i < made.length; i++) {
+    const difference = a[i] - b[i];
+    made[i] = Number.isFinite(difference) ? inErrors(difference, errorOfA[i], errorOfB[i]) : NaN;
+  }
+  return made;
 }
 
-// The channel that deviates most, of each place.
-function strongest(channels) {
-  const letters = new Uint8Array(channels[0].length);
-  const values = channels[0].map((first, i) => {
-    let most = first;
-    for (let c = 1; c < 3; c++) {
-      if (Math.abs(channels[c][i]) > Math.abs(most)) [most, letters[i]] = [channels[c][i], c];
-      else if (Number.isNaN(channels[c][i])) most = NaN;
-    }
-    return most;
-  });
+// The channel that deviates most, of each place; NaN where one is.
+function strongest([r, g, b]) {
+  const letters = new Uint8Array(r.length);
+  const values = new Float64Array(r.length);
+  for (let i = 0; i < values.length; i++) {
+    const [x, y, z] = [Math.abs(r[i]), Math.abs(g[i]), Math.abs(b[i])];
+    letters[i] = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    values[i] = Number.isNaN(x + y + z) ? NaN : letters[i] === 0 ? r[i] : letters[i] === 1 ? g[i] : b[i];
+  }
   return { values, letters };
 }
 
-function deviationField(pair, channel) {
-  const size = { width: pair.width, height: pair.height };
-  if (channel !== "RGB") return { ...size, values: deviations(pair, WEIGHTS[channel]) };
-  return { ...size, ...strongest(["R", "G", "B"].map((c) => deviations(pair, WEIGHTS[c]))) };
+// Of one channel, of the one that deviates most, or of luminance, whose errors are those of the channels added, as these
+// share their paths.
+function deviationField({ width, height, ours, theirs }, channel) {
+  const sides = [ours.mean, theirs.mean, ours.error, theirs.error];
+  const of = (c) => deviations(...sides.map((side) => side[c]));
+  if (channel === "RGB") return { width, height, ...strongest([0, 1, 2].map(of)) };
+  if (channel !== "luminance") return { width, height, values: of("RGB".indexOf(channel)) };
+  return { width, height, values: deviations(...sides.map((side) => weighted(side, WEIGHTS.luminance))) };
 }
 
 // Tiles as the rows of the results have them, where the reference is that of the results; else by the pixels.
