@@ -2,6 +2,7 @@
 
 pub mod answer;
 mod axes;
+pub mod baseline;
 mod budget;
 mod compare;
 mod curves;
@@ -11,6 +12,7 @@ mod family;
 pub mod figure;
 mod forest;
 pub mod images;
+pub mod latex;
 pub mod lookup;
 mod mistakes;
 pub mod mitsuba;
@@ -29,6 +31,7 @@ mod wrong;
 
 pub use lookup::Lookup;
 
+use crate::experiment::baseline::Comparison;
 use crate::experiment::store::Store;
 use crate::experiment::{Cell, Error, Plan, Row};
 use crate::truth::{Reference, Truth};
@@ -36,18 +39,23 @@ use page::{Drawn, Picture};
 use std::io;
 use std::path::Path;
 
-/// Writes everything that follows from the cells into `store`; `images` of an earlier run are taken over from there.
+/// Writes everything that follows from the cells into `store`; `images` of an earlier run are taken over from there, and
+/// `comparison` is what has changed since a baseline.
 pub fn write(
     plan: &Plan,
     cells: &[Option<Cell>],
     rows: &[Row],
     store: &Store,
     images: Option<&Path>,
+    comparison: Option<&Comparison>,
 ) -> Result<(), Error> {
     let lookup = Lookup::new(plan, rows);
     store.write("results.csv", &table::results(plan, cells, rows))?;
     if cells.iter().flatten().any(|cell| !cell.traces.is_empty()) {
         store.write("convergence.csv", &decline::csv(plan, cells))?;
+    }
+    if let Some(comparison) = comparison {
+        store.write("baseline.csv", &baseline::csv(comparison))?;
     }
     let mut drawn = Vec::new();
     for plots::Named { name, figure } in plots::figures(&lookup, cells) {
@@ -59,7 +67,7 @@ pub fn write(
         Some(folder) => copy_images(plan, cells, store, folder)?,
     };
     let answer = answer::sentences(&lookup);
-    store.write("index.html", page::page(&lookup, cells, &answer, &drawn, &pictures).as_bytes())
+    store.write("index.html", page::page(&lookup, cells, &answer, &drawn, &pictures, comparison).as_bytes())
 }
 
 fn failed(store: &Store, error: &dyn std::error::Error) -> Error {

@@ -2,6 +2,7 @@
 //! network.
 
 mod assets;
+mod baseline;
 mod evidence;
 mod faults;
 mod images;
@@ -13,6 +14,7 @@ mod verdicts;
 
 use super::lookup::Lookup;
 use super::summary::{self, Line};
+use crate::experiment::baseline::Comparison;
 use crate::experiment::{Cell, Core, Plan};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -43,6 +45,7 @@ pub fn page(
     answer: &[String],
     figures: &[Drawn],
     pictures: &[Picture],
+    comparison: Option<&Comparison>,
 ) -> String {
     let plan = lookup.plan;
     let finished: Vec<usize> = (0..plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty()).collect();
@@ -56,6 +59,7 @@ pub fn page(
             ul { @for sentence in answer { li { (sentence) } } }
         }
         section { h2 { "Verdicts" } (verdicts::claims(lookup)) (verdicts::verdicts(&lines)) }
+        (baseline::section(comparison))
         (places::section(lookup))
         (faults::section(lookup))
         @if !figures.is_empty() {

@@ -1,9 +1,11 @@
 //! Running, planning, listing and reporting experiments.
 
 use crate::args::{Format, Options};
+use crate::baseline::{self, Wanted};
 use crate::files::{self, Source};
 use crate::progress::Progress;
 use crate::{HELD, INTERRUPTED, NOT_HELD, claims, study};
+use furnace::experiment::baseline::Comparison;
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
 use furnace::report::{self, Lookup, answer, table, terminal};
@@ -20,11 +22,13 @@ pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8,
     let sources = names.iter().map(|name| Source::read(name, options)).collect::<Result<Vec<_>, _>>()?;
     // a mistake in the last file shall not cost the time of the first
     let plans = sources.iter().map(|source| source.plan(options)).collect::<Result<Vec<_>, _>>()?;
+    let wanted = sources.iter().zip(&plans).map(|(source, plan)| baseline::wanted(source, plan, options));
+    let wanted = wanted.collect::<Result<Vec<_>, _>>()?;
     let mut worst = HELD;
-    for (source, plan) in sources.iter().zip(&plans) {
+    for ((source, plan), wanted) in sources.iter().zip(&plans).zip(&wanted) {
         worst = worst.max(match options.claims {
             true => claims::one(plan, options, stop)?,
-            false => one(source, plan, options, stop)?,
+            false => one(source, plan, wanted, options, stop)?,
         });
         if stop.load(Ordering::Relaxed) {
             break;
@@ -47,7 +51,13 @@ pub fn pool(options: &Options) -> Result<rayon::ThreadPool, Error> {
     pool.map_err(|e| Error::Refused(format!("cannot start {} threads: {e}", options.jobs)))
 }
 
-fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+fn one(
+    source: &Source,
+    plan: &Plan,
+    wanted: &Wanted,
+    options: &Options,
+    stop: &AtomicBool,
+) -> Result<u8, Error> {
     if plan.spec.seeds.is_some() {
         return study::one(source, plan, options, stop);
     }
@@ -57,10 +67,11 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
     let rows = verdict::rows(plan, &cells);
     store.write("timing.csv", &table::timing(plan, &cells, &seconds, &rows))?;
     store.write("run.json", provenance(source, plan).as_bytes())?;
-    report::write(plan, &cells, &rows, &store, None)?;
+    let comparison = wanted.compare(plan, &cells, &rows);
+    report::write(plan, &cells, &rows, &store, None, comparison.as_ref())?;
     let interrupted = cells.iter().any(Option::is_none);
     let finished = cells.iter().filter(|cell| cell.is_some()).count();
-    store.write_cells(&Stored {
+    let stored = Stored {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         spec: source.text.clone(),
         seed: plan.spec.seed,
@@ -69,10 +80,12 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
         labels: plan.cells.iter().map(|cell| plan.label(cell)).collect(),
         cells,
         seconds,
-    })?;
+    };
+    store.write_cells(&stored)?;
     let partial = format!("{}-interrupted", source.name);
     let folder = store.publish(interrupted.then_some(partial.as_str()))?;
-    print(plan, &rows, &folder, options);
+    print(plan, &rows, &folder, comparison.as_ref(), options);
+    wanted.save(plan, &stored.cells, &rows, commit())?;
     if interrupted {
         eprintln!(
             "interrupted: {finished} of {} cells are finished and kept in {}",
@@ -116,7 +129,7 @@ pub fn status(plan: &Plan, rows: &[Row]) -> u8 {
     if mistake::all_held(plan, rows) { HELD } else { NOT_HELD }
 }
 
-fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
+fn print(plan: &Plan, rows: &[Row], folder: &Path, comparison: Option<&Comparison>, options: &Options) {
     let lookup = Lookup::new(plan, rows);
     let sentences = answer::sentences(&lookup);
     let page = folder.join("index.html");
@@ -128,6 +141,7 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
         let cells: Vec<_> = (0..plan.cells.len()).filter(|&i| !lookup.cell(i).is_empty()).map(cell).collect();
         let object = serde_json::json!({
             "schema": 1, "experiment": plan.name, "answer": sentences, "cells": cells, "page": page,
+            "baseline": report::baseline::json(comparison),
         });
         println!("{object}");
         return;
@@ -135,24 +149,38 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
     println!("{}", plan.spec.question);
     println!();
     println!("{}", terminal::table(&lookup));
+    if let Some(comparison) = comparison {
+        println!("{}", report::baseline::text(comparison));
+    }
     sentences.iter().for_each(|sentence| println!("- {sentence}"));
     println!("\nThe page: {}", page.display());
 }
 
 pub fn provenance(source: &Source, plan: &Plan) -> String {
-    let git = std::process::Command::new("git").args(["rev-parse", "HEAD"]).output();
-    let commit = git.ok().filter(|out| out.status.success());
-    let commit = commit.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned());
     let object = serde_json::json!({
         "experiment": source.name,
         "spec": source.text,
         "seed": plan.spec.seed,
         "version": env!("CARGO_PKG_VERSION"),
-        "commit": commit,
+        "commit": commit(),
         "machine": { "architecture": std::env::consts::ARCH, "system": std::env::consts::OS,
             "cores": std::thread::available_parallelism().map_or(0, usize::from) },
     });
     serde_json::to_string_pretty(&object).expect("a JSON value has a text") + "\n"
+}
+
+/// The commit of the folder that one is in, if git knows it.
+pub fn commit() -> Option<String> {
+    let git = std::process::Command::new("git").args(["rev-parse", "HEAD"]).output();
+    let commit = git.ok().filter(|out| out.status.success());
+    commit.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned())
+}
+
+/// The commit of a stored run.
+fn commit_of_run(folder: &Path) -> Option<String> {
+    let text = std::fs::read(folder.join("run.json")).ok()?;
+    let run: serde_json::Value = serde_json::from_slice(&text).ok()?;
+    run["commit"].as_str().map(str::to_owned)
 }
 
 /// Rebuilds the reports of stored runs.
@@ -162,6 +190,7 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         let source = Source::read(name, options)?;
         let mut plan = source.plan(options)?;
         let folder = source.report_folder(options);
+        let wanted = baseline::wanted(&source, &plan, options)?;
         if plan.spec.seeds.is_some() {
             worst = worst.max(study::report(&plan, &folder, options)?);
             continue;
@@ -174,10 +203,12 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
             let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
             store.write(file, &text)?;
         }
-        report::write(&plan, &stored.cells, &rows, &store, Some(&folder))?;
+        let comparison = wanted.compare(&plan, &stored.cells, &rows);
+        report::write(&plan, &stored.cells, &rows, &store, Some(&folder), comparison.as_ref())?;
         store.write_cells(&stored)?;
         let folder = store.publish(None)?;
-        print(&plan, &rows, &folder, options);
+        print(&plan, &rows, &folder, comparison.as_ref(), options);
+        wanted.save(&plan, &stored.cells, &rows, commit_of_run(&folder))?;
         worst = worst.max(status(&plan, &rows));
     }
     Ok(worst)

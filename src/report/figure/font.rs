@@ -10,7 +10,8 @@ use std::sync::OnceLock;
 pub const WOFF2: &[u8] =
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.woff2"));
 
-const TTF: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.ttf"));
+pub(super) const TTF: &[u8] =
+    include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.ttf"));
 
 /// What text in the SVG asks for: our font, else its parent, which is as wide, else any.
 /// plotters takes the whole list as one name.
