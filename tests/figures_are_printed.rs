@@ -4,6 +4,10 @@
 
 use assert_cmd::{Command, cargo::cargo_bin};
 use flate2::read::ZlibDecoder;
+use furnace::report::figure::{
+    self, Axis, Colour, Column, Figure, Mark, Marker, Panel, Point, Region, Series, Style,
+};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
@@ -138,7 +142,7 @@ fn text_has_the_size_that_is_asked_for_and_stays_text() {
         let text: Vec<&String> = streams.iter().filter(|stream| stream.contains("BT\n")).collect();
         assert_eq!(text.len(), 1, "one page");
         let raw = String::from_utf8_lossy(pdf);
-        assert!(raw.contains("/ToUnicode") && raw.contains("/FontFile") && raw.contains("DejaVu"));
+        assert!(raw.contains("/ToUnicode") && raw.contains("/FontFile") && raw.contains("FurnaceSans"));
         assert!(streams.iter().any(|stream| stream.contains("begincmap")));
         assert!(!raw.contains("/CreationDate") && !raw.contains("/Image"));
         assert!(!written.contains_key("bias.pdf"), "only what was asked for");
@@ -183,7 +187,7 @@ fn the_numbers_of_a_figure_are_those_of_the_results() {
     let mut results = csv::Reader::from_path(place.path().join("reports/x/results.csv")).unwrap();
     let header = results.headers().unwrap().clone();
     let column = |name: &str| header.iter().position(|h| h == name).unwrap();
-    let mut seen = 0;
+    let (mut seen, mut with_bars) = (0, 0);
     for row in results.records().map(Result::unwrap) {
         let of = |name: &str| row[column(name)].to_owned();
         if of("scene") != "furnace"
@@ -196,11 +200,16 @@ fn the_numbers_of_a_figure_are_those_of_the_results() {
         let shown = point("Variance", &of("channel"), &of("q"));
         let [y, right]: [f64; 2] = [&shown[4], &of("variance")].map(|n| n.parse().unwrap());
         assert!((y / right - 1.0).abs() < 1e-8);
-        let [low, high]: [f64; 2] = [&shown[5], &shown[6]].map(|n| n.parse().unwrap());
-        assert!(low < y && y < high);
+        // no error of the variance is known where theory has an infinite fourth moment
+        if !shown[5].is_empty() {
+            let [low, high]: [f64; 2] = [&shown[5], &shown[6]].map(|n| n.parse().unwrap());
+            assert!(low < y && y < high);
+            with_bars += 1;
+        }
         seen += 1;
     }
     assert_eq!(seen, 9);
+    assert!(with_bars >= 6, "{with_bars}");
     assert!(records.iter().any(|r| r[1] == *"curve"), "no theory");
 }
 
@@ -209,8 +218,7 @@ fn names_stay_text_in_latex() {
     let place = finished();
     experiment(&place, &["figure", "x"]);
     let tex = fs::read_to_string(place.path().join("figures/x/x.tex")).unwrap();
-    let scene =
-        r"\emph{50\% \& \#1\_\$ \textbackslash{}input\{x\} \textasciicircum{}\textasciitilde{} -{}-{}}";
+    let scene = r"\emph{50\% \& \#1\_\$ \textbackslash{}input\{x\} \textasciicircum{}\textasciitilde{} -{}-}";
     assert!(tex.contains(scene), "{tex}");
     assert!(tex.contains(r"\caption{Does 50\% \& \#1\_\$ of \textbackslash{}input\{x\} stay \textasciitilde{}text\textasciicircum{}?"));
     assert!(tex.contains(r"at most $0.001$."), "{tex}");
@@ -256,10 +264,10 @@ fn what_cannot_be_drawn_is_refused() {
     };
     refuses(&["figure", "x"], &["cannot read reports/x/cells.json"]);
     experiment(&place, &["x", "--quiet", "--samples", "64"]);
-    for width in ["84", "wide", "84px", "mm", "nanmm"] {
+    for width in ["84", "wide", "84px", "mm"] {
         refuses(&["figure", "x", "--width", width], &["a length is a number with its unit, such as 84mm"]);
     }
-    for width in ["0mm", "-3mm", "infmm"] {
+    for width in ["0mm", "-3mm", "infmm", "nanmm"] {
         refuses(&["figure", "x", &format!("--width={width}")], &["it must be positive"]);
     }
     refuses(
@@ -275,4 +283,33 @@ fn what_cannot_be_drawn_is_refused() {
         &["--font-size is 0.50 mm; it lies between 1 and 20 mm"],
     );
     refuses(&["figure", "y"], &["no experiment called `y`"]);
+}
+
+/// Another digest is another file for everyone who keeps them under version control: a change of this must be meant.
+#[test]
+fn the_bytes_are_pinned() {
+    let points = vec![Point::between(0.0, 0.5, 0.25, 1.0), Point::new(0.5, 0.75), Point::new(1.0, f64::NAN)];
+    let series =
+        |style, colour| Series { label: "⟨data⟩".to_owned(), colour, style, points: points.clone() };
+    let panel = Panel {
+        title: "title".to_owned(),
+        x: Axis::linear("x  [m]"),
+        y: Axis::linear("y  [(W m⁻² sr⁻¹)²]"),
+        regions: vec![Region { from: 0.25, to: 0.5, label: "region".to_owned(), colour: Colour::Green }],
+        marks: vec![Mark::Horizontal { at: 0.5, label: "mark".to_owned(), colour: Colour::Black }],
+        series: vec![
+            series(Style::Dashed, Colour::Blue),
+            series(Style::Markers(Marker::Circle), Colour::Orange),
+        ],
+        lying: false,
+    };
+    let figure = Figure { title: "A figure".to_owned(), alt: String::new(), panels: vec![panel], columns: 1 };
+    let printed = figure::print(&figure, Column { width: 84.0, font: 3.0 }).unwrap();
+    let digest =
+        |bytes: &[u8]| Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let digests = [digest(printed.svg.as_bytes()), digest(&printed.pdf), digest(&figure::csv(&figure))];
+    assert_eq!(
+        digests.each_ref().map(|d| &d[..16]),
+        ["bd15886d75fe071d", "77a0b25095acdc30", "ea7758f20dc54c12"]
+    );
 }

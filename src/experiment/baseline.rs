@@ -75,17 +75,17 @@ impl Baseline {
     }
 }
 
-/// What is concluded of a change.
+/// What is concluded of a change; the more there is to say, the later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Finding {
+    /// Nothing can be said, because a standard error is unknown.
+    Unknown,
     /// The same bits.
     Identical,
     /// The interval holds no change.
     None,
     /// There is a change, but it may be smaller than [`NOISE`].
     Noise,
-    /// Nothing can be said, because a standard error is unknown.
-    Unknown,
     /// For the better, by more than [`NOISE`].
     Improved,
     /// A mean is another one.

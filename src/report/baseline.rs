@@ -55,7 +55,7 @@ pub fn read((name, answers): Quantity<'_>) -> String {
         (_, Finding::Identical) => "=".to_owned(),
         (Some(change), finding) if finding != Finding::Unknown => {
             let (value, unit): (fn(f64) -> String, _) =
-                if name == "mean" { (number::signed, " %") } else { (number::short, "") };
+                if name == "mean" { (percent, " %") } else { (ratio, "") };
             format!("{} [{}, {}]{unit}", value(change.estimate), value(change.low), value(change.high))
         }
         _ => "-".to_owned(),
@@ -66,16 +66,47 @@ pub fn read((name, answers): Quantity<'_>) -> String {
     if alike { text } else { format!("{text} {}", CHANNELS[channel]) }
 }
 
-/// What is concluded about a cell: "no change detected", or every quantity of which there is more to say.
+/// Percent with a sign; what rounding leaves is nothing.
+fn percent(value: f64) -> String {
+    if value.abs() < 1e-6 { "0".to_owned() } else { number::signed(value) }
+}
+
+/// Near 1 with as many decimals on either side of it.
+fn ratio(value: f64) -> String {
+    if (0.1..10.0).contains(&value) { format!("{value:.3}") } else { number::short(value) }
+}
+
+/// What is concluded about a cell: "no change detected", or every quantity of which there is more to say; and what is not
+/// known.
 pub fn conclusion(cell: &Compared) -> String {
-    let found = quantities(cell).map(|quantity| (quantity.0, worst(quantity).1));
-    if found.iter().all(|(_, answer)| answer.finding == Finding::Identical) {
-        return word(Finding::Identical).to_owned();
+    let quantities = quantities(cell);
+    let found = quantities.map(|quantity| (quantity.0, worst(quantity).1.finding));
+    let told = found.iter().filter(|(_, finding)| *finding > Finding::None);
+    let told: Vec<String> = told.map(|(name, finding)| format!("{name} {}", word(*finding))).collect();
+    let said = match told.is_empty() {
+        true if found.iter().all(|(_, finding)| *finding == Finding::Identical) => {
+            word(Finding::Identical).to_owned()
+        }
+        true => word(Finding::None).to_owned(),
+        false => told.join(", "),
+    };
+    let unknown: Vec<String> = quantities.into_iter().filter_map(unknown).collect();
+    if unknown.is_empty() {
+        said
+    } else {
+        format!("{said} ({}: {})", word(Finding::Unknown), unknown.join(", "))
     }
-    let quiet = |finding| matches!(finding, Finding::Identical | Finding::None);
-    let told = found.iter().filter(|(_, answer)| !quiet(answer.finding));
-    let told: Vec<String> = told.map(|(name, answer)| format!("{name} {}", word(answer.finding))).collect();
-    if told.is_empty() { word(Finding::None).to_owned() } else { told.join(", ") }
+}
+
+/// "variance R", if that is the channel of which nothing is known; "variance", if nothing is known of any.
+fn unknown((name, answers): Quantity<'_>) -> Option<String> {
+    let channels = answers.iter().zip(CHANNELS).filter(|(answer, _)| answer.finding == Finding::Unknown);
+    let letters: Vec<&str> = channels.map(|(_, letter)| letter).collect();
+    match letters.len() {
+        0 => None,
+        all if all == answers.len() => Some(name.to_owned()),
+        _ => Some(format!("{name} {}", letters.join(" "))),
+    }
 }
 
 /// The most serious finding about a cell.

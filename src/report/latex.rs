@@ -55,7 +55,7 @@ fn table(out: &mut String, lookup: &Lookup<'_>, blocks: &[Block<'_>], (page, pag
     let label = if pages == 1 { name } else { format!("{name}-{}", page + 1) };
     let _ = write!(
         out,
-        "\\begin{{table*}}\n  \\centering\n  \\caption{{{caption}}}\n  \\label{{tab:{label}}}\n  \\scriptsize\n  \
+        "\\begin{{table*}}\n  \\centering\n  \\caption{{{caption}}}\n  \\label{{tab:{label}}}\n  \\smallskip\n  \\scriptsize\n  \
          \\begin{{tabular}}{{@{{}}llrlrlrr@{{}}}}\n    \\toprule\n    estimator & rule & samples & bias [\\%] & mde [\\%] & \
          verdict & rays & efficiency \\\\\n"
     );

@@ -40,7 +40,13 @@ const LACKING: &str = "«»ÐÞðþĄąĐđĘęĦħĮįĸĿŀŉŊŋŦŧŲųſ";
 /// The text with nothing in it that LaTeX would take for a command; what pdfTeX cannot set is named by its number.
 pub(super) fn text(plain: &str) -> String {
     let mut out = String::new();
+    let mut before = ' ';
     for letter in plain.chars() {
+        // these would become one other sign
+        if matches!((before, letter), ('-', '-') | ('\'', '\'') | (',', ',') | ('`' | '?' | '!', '`')) {
+            out.push_str("{}");
+        }
+        before = letter;
         let _ = match letter {
             '\\' => write!(out, "\\textbackslash{{}}"),
             '^' => write!(out, "\\textasciicircum{{}}"),
@@ -49,8 +55,8 @@ pub(super) fn text(plain: &str) -> String {
             '>' => write!(out, "\\textgreater{{}}"),
             '|' => write!(out, "\\textbar{{}}"),
             '{' | '}' | '$' | '&' | '#' | '_' | '%' => write!(out, "\\{letter}"),
-            // two of these would become one other sign; ` and ? and ! too
-            '-' | '\'' | '`' | '"' | ',' => write!(out, "{letter}{{}}"),
+            // German packages give it a meaning
+            '"' => write!(out, "\\char34{{}}"),
             ' '..='~' => write!(out, "{letter}"),
             '\u{a1}'..='\u{17f}' | '–' | '—' | '…' if !LACKING.contains(letter) => {
                 write!(out, "{letter}")
@@ -77,14 +83,15 @@ mod tests {
             text("a^b~c\n<d>|e"),
             "a\\textasciicircum{}b\\textasciitilde{}c \\textless{}d\\textgreater{}\\textbar{}e"
         );
-        assert_eq!(text("a--b ?`"), "a-{}-{}b ?`{}");
+        assert_eq!(text("a--b-c ?`\" ''"), "a-{}-b-c ?{}`\\char34{} '{}'");
         assert_eq!(text("q ≥ 10⁻² é 中\u{7f}"), "q \\ensuremath{\\ge} 10\\ensuremath{{}^{-}}² é [U+4E2D] ");
     }
 
     /// Every letter that LaTeX gives a meaning stands behind a backslash, or in a command of ours.
     #[test]
     fn no_letter_keeps_its_meaning() {
-        let commands = ["\\textbackslash{}", "\\textasciicircum{}", "\\textasciitilde{}", "\\textless{}"];
+        let commands =
+            ["\\textbackslash{}", "\\textasciicircum{}", "\\textasciitilde{}", "\\textless{}", "\\char34{}"];
         for letter in (0..0x250).filter_map(char::from_u32) {
             let mut rest = text(&format!("x{letter}x"));
             for command in commands.into_iter().chain(["\\textgreater{}", "\\textbar{}", "{}"]) {
