@@ -2,6 +2,7 @@
 
 mod agree;
 pub mod allot;
+pub mod baseline;
 mod block;
 pub mod cell;
 pub mod choices;

@@ -1,5 +1,5 @@
 //! Scientific figures: panels of points, curves and bars on linear, logarithmic and category axes,
-//! written as SVG and PNG.
+//! written as SVG and PNG, or as SVG and PDF for a paper.
 //!
 //! Nothing that cannot be drawn is left out in silence: a value that lies beyond its axis, is
 //! infinite, or is not positive on a logarithmic axis becomes a small triangle at the edge of the
@@ -17,12 +17,16 @@ pub(super) mod font;
 mod frame;
 mod json;
 mod legend;
+mod look;
 mod mark;
 mod paint;
 mod panel;
+mod pdf;
+mod print;
 mod range;
 mod series;
 mod sheet;
+mod table;
 #[cfg(test)]
 mod tests;
 mod ticks;
@@ -31,6 +35,10 @@ pub use colour::Colour;
 pub use data::{Marker, Point, Series, Style};
 pub use font::{FAMILY, WOFF2};
 pub use json::{hex, json};
+pub use print::{Column, Printed, print};
+pub use table::csv;
+
+use look::Look;
 
 /// A figure: a title, one legend for all panels, and the panels.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -178,14 +186,16 @@ pub enum FigureError {
     },
 }
 
-/// Writes `stem`.svg and `stem`.png (two pixels to the unit of the SVG). The directory must exist.
+/// Writes `stem`.svg, `stem`.png (two pixels to the unit of the SVG) and `stem`.csv with the numbers. The directory must
+/// exist.
 ///
 /// # Errors
 ///
 /// When drawing fails or a file cannot be written.
 pub fn write(figure: &Figure, stem: &Path) -> Result<(), FigureError> {
     save(with_ending(stem, ".svg"), svg(figure)?.as_bytes())?;
-    save(with_ending(stem, ".png"), &paint::png(&sheet::draw(figure))?)
+    save(with_ending(stem, ".png"), &paint::png(&sheet::draw(figure, Look::SCREEN))?)?;
+    save(with_ending(stem, ".csv"), &csv(figure))
 }
 
 fn save(path: PathBuf, bytes: &[u8]) -> Result<(), FigureError> {
@@ -199,9 +209,16 @@ fn save(path: PathBuf, bytes: &[u8]) -> Result<(), FigureError> {
 /// When drawing fails.
 pub fn svg(figure: &Figure) -> Result<String, FigureError> {
     font::register()?;
+    let canvas = sheet::draw(figure, Look::SCREEN);
+    let size = (canvas.width.to_string(), canvas.height.to_string());
+    paint::svg(&canvas, &describe(figure), size)
+}
+
+/// The text alternative of a figure.
+fn describe(figure: &Figure) -> String {
     let words = [figure.title.trim(), figure.alt.trim()];
     let description = words.map(|text| text.trim_end_matches('.')).join(". ");
-    paint::svg(&sheet::draw(figure), description.trim_matches(['.', ' ']))
+    description.trim_matches(['.', ' ']).to_owned()
 }
 
 /// Appends an ending; `Path::with_extension` would cut "q=0.5" at the point.

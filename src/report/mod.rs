@@ -2,6 +2,7 @@
 
 pub mod answer;
 mod axes;
+pub mod baseline;
 mod budget;
 mod compare;
 pub mod costs;
@@ -12,6 +13,7 @@ mod family;
 pub mod figure;
 mod forest;
 pub mod images;
+pub mod latex;
 pub mod lookup;
 pub mod metrics;
 mod mistakes;
@@ -35,6 +37,7 @@ mod wrong;
 
 pub use lookup::Lookup;
 
+use crate::experiment::baseline::Comparison;
 use crate::experiment::store::Store;
 use crate::experiment::{Cell, Error, Plan, Row};
 use crate::stats::Verdict;
@@ -44,7 +47,8 @@ use run::Run;
 use std::io;
 use std::path::Path;
 
-/// Writes everything that follows from the cells into `store`; `images` of an earlier run are taken over from there.
+/// Writes everything that follows from the cells into `store`; `images` of an earlier run are taken over from there, and
+/// `comparison` is what has changed since a baseline.
 pub fn write(
     plan: &Plan,
     cells: &[Option<Cell>],
@@ -52,6 +56,7 @@ pub fn write(
     run: &Run,
     store: &Store,
     images: Option<&Path>,
+    comparison: Option<&Comparison>,
 ) -> Result<(), Error> {
     let lookup = Lookup::new(plan, rows);
     store.write(run::FILE, run.text().as_bytes())?;
@@ -59,6 +64,9 @@ pub fn write(
     store.write("results.csv", &table::results(plan, cells, rows))?;
     if cells.iter().flatten().any(|cell| !cell.traces.is_empty()) {
         store.write("convergence.csv", &decline::csv(plan, cells))?;
+    }
+    if let Some(comparison) = comparison {
+        store.write("baseline.csv", &baseline::csv(comparison))?;
     }
     let mut drawn = Vec::new();
     for plots::Named { name, figure } in plots::figures(&lookup, cells) {
@@ -78,6 +86,7 @@ pub fn write(
         figures: &drawn,
         pictures: &pictures,
         run,
+        comparison,
     };
     store.write("index.html", page::page(&content).as_bytes())
 }

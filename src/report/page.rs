@@ -2,6 +2,7 @@
 //! needs no network. All of it is a function of what was measured, but for one line, which is of the run.
 
 mod assets;
+mod baseline;
 mod bounces;
 mod costs;
 mod details;
@@ -24,6 +25,7 @@ use super::lookup::Lookup;
 use super::pictures::Picture;
 use super::run::Run;
 use super::summary::{self, Line};
+use crate::experiment::baseline::Comparison;
 use crate::experiment::{Cell, Plan};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::json;
@@ -52,6 +54,8 @@ pub struct Content<'a> {
     pub pictures: &'a [Picture],
     /// Which run it was.
     pub run: &'a Run,
+    /// How it differs from an earlier one, if that was asked for.
+    pub comparison: Option<&'a Comparison>,
 }
 
 /// The whole page.
@@ -76,6 +80,7 @@ pub fn page(content: &Content<'_>) -> String {
             ul { @for sentence in content.answer { li { (sentence) } } }
         }
         section #verdicts { h2 { "Verdicts" } (verdicts::verdicts(&lines)) (verdicts::claims(lookup)) }
+        (baseline::section(content.comparison))
         (places::section(lookup))
         (faults::section(lookup))
         (costs::section(lookup, content.costs))

@@ -5,7 +5,7 @@
 //! error rates promised are those of the whole family of questions.
 //!
 //! Whether a mean may be judged at all: [`tails`], [`tally`], [`replicates`], [`skewed`].
-//! Questions that no mean answers: [`decay`], [`law`], [`rate`], [`trend`]. How good the verdicts
+//! Questions that no mean answers: [`change`], [`decay`], [`law`], [`rate`], [`trend`]. How good the verdicts
 //! are, and those of others: [`binomial`], [`rivals`], and on samples whose mean is known
 //! exactly [`nulls`], [`calibrate`].
 
@@ -14,6 +14,7 @@ pub mod bets;
 mod bets_hold;
 pub mod binomial;
 pub mod calibrate;
+pub mod change;
 pub mod decay;
 mod evidence;
 pub mod judge;

@@ -1,5 +1,7 @@
 //! What can be typed.
 
+use crate::baseline::Names;
+use crate::figure::{self, Figure};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -41,6 +43,9 @@ pub enum Command {
         #[arg(required = true)]
         names: Vec<String>,
     },
+    /// Figures for a paper, at the width of a column, as SVG, PDF and CSV, and the verdicts as a LaTeX table; samples nothing
+    #[command(after_help = figure::EXAMPLES)]
+    Figure(Figure),
     /// Renders one image, e.g. `experiment render cornell_box --estimator explicit --spp 64 -o out.exr`
     Render(Render),
     /// Makes a stored image that estimators of other kinds can be compared with, or adds samples to it
@@ -132,6 +137,8 @@ fn positive(text: &str) -> Result<f64, String> {
 
 #[derive(Args, Clone, Default)]
 pub struct Options {
+    #[command(flatten)]
+    pub baselines: Names,
     /// Write to DIR/NAME instead of reports/NAME
     #[arg(long, value_name = "DIR", global = true)]
     pub out: Option<PathBuf>,
@@ -156,7 +163,7 @@ pub struct Options {
     #[arg(long)]
     pub all: bool,
     /// Judge the claims and write nothing: what a nightly run wants. Takes a fresh seed, and prints it, unless --seed is given
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["baseline", "save_baseline"])]
     pub claims: bool,
     /// Only cells whose label contains TEXT
     #[arg(long, value_name = "TEXT", global = true)]

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Names that an experiment must not have, because they are commands.
-const COMMANDS: [&str; 7] = ["list", "plan", "report", "render", "reference", "export", "help"];
+const COMMANDS: [&str; 8] = ["list", "plan", "report", "figure", "render", "reference", "export", "help"];
 
 /// An experiment file with its text.
 pub struct Source {

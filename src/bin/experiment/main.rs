@@ -1,8 +1,10 @@
 //! The command line: `experiment rr_sweep`.
 
 mod args;
+mod baseline;
 mod claims;
 mod export;
+mod figure;
 mod files;
 mod plans;
 mod progress;
@@ -55,6 +57,7 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
         Some(Command::List) => plans::list(&cli.options),
         Some(Command::Plan { names, margin }) => plans::plans(names, *margin, &cli.options),
         Some(Command::Report { names }) => run::reports(names, &cli.options),
+        Some(Command::Figure(figure)) => figure::figure(figure, &cli.options),
         Some(Command::Export(export)) => export::export(export, &cli.options),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),
         Some(Command::Reference(reference)) => reference::reference(reference, &cli.options, stop),

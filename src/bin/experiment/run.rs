@@ -1,9 +1,11 @@
 //! Running, planning, listing and reporting experiments.
 
 use crate::args::{Format, Options};
+use crate::baseline::{self, Wanted};
 use crate::files::{self, Source};
 use crate::progress::Progress;
 use crate::{HELD, INTERRUPTED, NOT_HELD, claims, provenance, study};
+use furnace::experiment::baseline::Comparison;
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
 use furnace::report::run::Run;
@@ -21,11 +23,13 @@ pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8,
     let sources = names.iter().map(|name| Source::read(name, options)).collect::<Result<Vec<_>, _>>()?;
     // a mistake in the last file shall not cost the time of the first
     let plans = sources.iter().map(|source| source.plan(options)).collect::<Result<Vec<_>, _>>()?;
+    let wanted = sources.iter().zip(&plans).map(|(source, plan)| baseline::wanted(source, plan, options));
+    let wanted = wanted.collect::<Result<Vec<_>, _>>()?;
     let mut worst = HELD;
-    for (source, plan) in sources.iter().zip(&plans) {
+    for ((source, plan), wanted) in sources.iter().zip(&plans).zip(&wanted) {
         worst = worst.max(match options.claims {
             true => claims::one(plan, options, stop)?,
-            false => one(source, plan, options, stop)?,
+            false => one(source, plan, wanted, options, stop)?,
         });
         if stop.load(Ordering::Relaxed) {
             break;
@@ -48,7 +52,13 @@ pub fn pool(options: &Options) -> Result<rayon::ThreadPool, Error> {
     pool.map_err(|e| Error::Refused(format!("cannot start {} threads: {e}", options.jobs)))
 }
 
-fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+fn one(
+    source: &Source,
+    plan: &Plan,
+    wanted: &Wanted,
+    options: &Options,
+    stop: &AtomicBool,
+) -> Result<u8, Error> {
     if plan.spec.seeds.is_some() {
         return study::one(source, plan, options, stop);
     }
@@ -58,10 +68,11 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
     let (cells, seconds) = sample(plan, options, stop)?;
     run.seconds.clone_from(&seconds);
     let rows = verdict::rows(plan, &cells);
-    report::write(plan, &cells, &rows, &run, &store, None)?;
+    let comparison = wanted.compare(plan, &cells, &rows);
+    report::write(plan, &cells, &rows, &run, &store, None, comparison.as_ref())?;
     let interrupted = cells.iter().any(Option::is_none);
     let finished = cells.iter().filter(|cell| cell.is_some()).count();
-    store.write_cells(&Stored {
+    let stored = Stored {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         spec: source.text.clone(),
         seed: plan.spec.seed,
@@ -70,11 +81,13 @@ fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Re
         labels: plan.cells.iter().map(|cell| plan.label(cell)).collect(),
         cells,
         seconds,
-    })?;
+    };
+    store.write_cells(&stored)?;
     let partial = format!("{}-interrupted", source.name);
     let folder = store.publish(interrupted.then_some(partial.as_str()))?;
     overview::write(&source.reports(options))?;
-    print(plan, &rows, &folder, options);
+    print(plan, &rows, &folder, comparison.as_ref(), options);
+    wanted.save(plan, &stored.cells, &rows, run.commit)?;
     if interrupted {
         eprintln!(
             "interrupted: {finished} of {} cells are finished and kept in {}",
@@ -118,7 +131,7 @@ pub fn status(plan: &Plan, rows: &[Row]) -> u8 {
     if mistake::all_held(plan, rows) { HELD } else { NOT_HELD }
 }
 
-fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
+fn print(plan: &Plan, rows: &[Row], folder: &Path, comparison: Option<&Comparison>, options: &Options) {
     let lookup = Lookup::new(plan, rows);
     let sentences = answer::sentences(&lookup);
     let page = folder.join("index.html");
@@ -130,6 +143,7 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
         let cells: Vec<_> = (0..plan.cells.len()).filter(|&i| !lookup.cell(i).is_empty()).map(cell).collect();
         let object = serde_json::json!({
             "schema": 1, "experiment": plan.name, "answer": sentences, "cells": cells, "page": page,
+            "baseline": report::baseline::json(comparison),
         });
         println!("{object}");
         return;
@@ -137,6 +151,9 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, options: &Options) {
     println!("{}", plan.spec.question);
     println!();
     println!("{}", terminal::table(&lookup));
+    if let Some(comparison) = comparison {
+        println!("{}", report::baseline::text(comparison));
+    }
     sentences.iter().for_each(|sentence| println!("- {sentence}"));
     println!("\nThe page: {}", page.display());
 }
@@ -147,6 +164,7 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
     for name in names {
         let source = Source::read(name, options)?;
         let mut plan = source.plan(options)?;
+        let wanted = baseline::wanted(&source, &plan, options)?;
         if plan.spec.seeds.is_some() {
             worst = worst.max(study::report(&source, &plan, options)?);
             continue;
@@ -156,11 +174,13 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         let rows = verdict::rows(&plan, &stored.cells);
         let store = Store::open(&folder)?;
         let run = Run::read(&folder)?;
-        report::write(&plan, &stored.cells, &rows, &run, &store, Some(&folder))?;
+        let comparison = wanted.compare(&plan, &stored.cells, &rows);
+        report::write(&plan, &stored.cells, &rows, &run, &store, Some(&folder), comparison.as_ref())?;
         store.write_cells(&stored)?;
         let folder = store.publish(None)?;
         overview::write(&source.reports(options))?;
-        print(&plan, &rows, &folder, options);
+        print(&plan, &rows, &folder, comparison.as_ref(), options);
+        wanted.save(&plan, &stored.cells, &rows, run.commit)?;
         worst = worst.max(status(&plan, &rows));
     }
     Ok(worst)

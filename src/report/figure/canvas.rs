@@ -1,5 +1,6 @@
 //! A list of shapes to paint, in pixels from the upper left corner, the later above the earlier.
 
+use super::look::Look;
 use super::{Colour, Marker, Style};
 
 /// A position in pixels, x to the right and y downwards.
@@ -77,6 +78,7 @@ pub(super) enum Shape {
 pub(super) struct Canvas {
     pub width: f64,
     pub height: f64,
+    pub look: Look,
     pub shapes: Vec<Shape>,
     /// Some value lies beyond its axis.
     pub beyond: bool,
@@ -95,6 +97,7 @@ impl Canvas {
     }
 
     pub fn path(&mut self, points: Vec<Xy>, width: f64, ink: Ink) {
+        let width = width * self.look.weight;
         self.shapes.push(Shape::Path { points, width, ink });
     }
 
@@ -130,8 +133,9 @@ impl Canvas {
 
     /// A marker with a thin white rim, which keeps it apart from lines under it.
     pub fn marker(&mut self, marker: Marker, at: Xy, ink: Ink) {
-        self.bare_marker(marker, at, RADIUS + 1.0, 3.4, Ink::WHITE);
-        self.bare_marker(marker, at, RADIUS, 2.0, ink);
+        let radius = RADIUS * self.look.weight;
+        self.bare_marker(marker, at, radius + 1.0, 3.4, Ink::WHITE);
+        self.bare_marker(marker, at, radius, 2.0, ink);
     }
 
     fn bare_marker(&mut self, marker: Marker, (x, y): Xy, r: f64, stroke: f64, ink: Ink) {

@@ -10,7 +10,8 @@ use std::sync::OnceLock;
 pub const WOFF2: &[u8] =
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.woff2"));
 
-const TTF: &[u8] = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.ttf"));
+pub(super) const TTF: &[u8] =
+    include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/fonts/FurnaceSans.ttf"));
 
 /// What text in the SVG asks for: our font, else its parent, which is as wide, else any.
 /// plotters takes the whole list as one name.
@@ -53,8 +54,8 @@ pub(super) fn line_height(em: f64) -> f64 {
 pub(super) fn wrap(text: &str, em: f64, limit: f64) -> Vec<String> {
     let mut lines = Vec::new();
     let mut line = String::new();
-    for word in text.split_whitespace() {
-        let longer = if line.is_empty() { word.to_string() } else { format!("{line} {word}") };
+    for word in words(text, em, limit) {
+        let longer = if line.is_empty() { word.clone() } else { format!("{line} {word}") };
         if width(&longer, em) <= limit {
             line = longer;
             continue;
@@ -62,12 +63,24 @@ pub(super) fn wrap(text: &str, em: f64, limit: f64) -> Vec<String> {
         if !line.is_empty() {
             lines.push(line);
         }
-        line = break_word(word, em, limit, &mut lines);
+        line = break_word(&word, em, limit, &mut lines);
     }
     if !line.is_empty() {
         lines.push(line);
     }
     lines
+}
+
+/// What spaces separate; a unit in brackets stays together if it fits on a line.
+fn words(text: &str, em: f64, limit: f64) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match words.last_mut().filter(|unit| unit.starts_with('[') && !unit.ends_with(']')) {
+            Some(unit) if width(&format!("{unit} {word}"), em) <= limit => *unit = format!("{unit} {word}"),
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
 }
 
 /// Moves full lines of an overlong word to `lines` and returns what is left.

@@ -3,7 +3,6 @@
 use super::canvas::{Anchor, Canvas, Ink, Xy};
 use super::{Colour, Figure, Mark, Panel, Style, font, mark};
 
-const EM: f64 = 12.5;
 /// Width of the sign beside a label in pixels.
 const SIGN: f64 = 28.0;
 const AFTER_SIGN: f64 = 7.0;
@@ -36,12 +35,13 @@ pub(super) fn draw(
     top: f64,
     width: f64,
 ) -> f64 {
-    let line = font::line_height(EM);
+    let em = canvas.look.legend;
+    let line = font::line_height(em);
     let (mut x, mut y, mut rows) = (left, top, 0);
     for entry in entries(figure, sideways) {
         let limit = width - SIGN - AFTER_SIGN;
-        let lines = font::wrap(&entry.label, EM, limit);
-        let text = lines.iter().map(|line| font::width(line, EM));
+        let lines = font::wrap(&entry.label, em, limit);
+        let text = lines.iter().map(|line| font::width(line, em));
         let needed = SIGN + AFTER_SIGN + text.fold(0.0, f64::max);
         if x > left && x + needed > left + width {
             (x, y) = (left, y + line * f64::from(rows) + 2.0);
@@ -49,9 +49,9 @@ pub(super) fn draw(
         }
         draw_signs(canvas, &entry, (x, y + 0.5 * line));
         for (index, text) in lines.iter().enumerate() {
-            let baseline = y + line * (index as f64 + 0.5) + 0.36 * EM;
+            let baseline = y + line * (index as f64 + 0.5) + 0.36 * em;
             let start = (x + SIGN + AFTER_SIGN, baseline);
-            canvas.text(text, start, EM, Anchor::Start);
+            canvas.text(text, start, em, Anchor::Start);
         }
         rows = rows.max(lines.len() as u32);
         x += needed + BETWEEN;

@@ -54,6 +54,6 @@ pub(super) fn reference(canvas: &mut Canvas, colour: Colour, from: Xy, to: Xy) {
 pub(super) fn ring(canvas: &mut Canvas, colour: Colour, at: Xy) {
     let ink = Ink::of(colour);
     for (radius, ink) in [(7.5, Ink::WHITE), (6.5, ink), (4.9, Ink::WHITE), (2.2, ink)] {
-        canvas.disc(at, radius, ink);
+        canvas.disc(at, radius * canvas.look.weight, ink);
     }
 }

@@ -27,10 +27,10 @@ struct Form {
 const SVG: Form = Form { unit: 10.0, drop: 0.76, pieces: false };
 const PNG: Form = Form { unit: 4.0, drop: SIZE_OF_EM / 2.0, pieces: true };
 
-/// The canvas as SVG text. `description`: the text alternative.
-pub(super) fn svg(canvas: &Canvas, description: &str) -> Result<String, FigureError> {
+/// The canvas as SVG text of this width and height. `description`: the text alternative.
+pub(super) fn svg(canvas: &Canvas, description: &str, size: (String, String)) -> Result<String, FigureError> {
     let mut text = String::new();
-    let (width, height) = size(canvas, SVG.unit);
+    let (width, height) = pixels(canvas, SVG.unit);
     {
         let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
         paint(&area, canvas, SVG)?;
@@ -42,15 +42,15 @@ pub(super) fn svg(canvas: &Canvas, description: &str) -> Result<String, FigureEr
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" \
          viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{}\" \
          stroke-linejoin=\"round\">\n{inside}",
-        canvas.width,
-        canvas.height,
+        size.0,
+        size.1,
         escape(description),
     ))
 }
 
 /// The canvas as a PNG file, two pixels to a pixel of the figure.
 pub(super) fn png(canvas: &Canvas) -> Result<Vec<u8>, FigureError> {
-    let (width, height) = size(canvas, PNG.unit);
+    let (width, height) = pixels(canvas, PNG.unit);
     let mut large = vec![0xFF; 3 * width as usize * height as usize];
     {
         let area = BitMapBackend::with_buffer(&mut large, (width, height)).into_drawing_area();
@@ -91,8 +91,8 @@ fn halve(large: &[u8], width: usize) -> Vec<u8> {
     small
 }
 
-fn size(canvas: &Canvas, unit: f64) -> (u32, u32) {
-    ((canvas.width * unit) as u32, (canvas.height * unit) as u32)
+fn pixels(canvas: &Canvas, unit: f64) -> (u32, u32) {
+    ((canvas.width * unit).round() as u32, (canvas.height * unit).round() as u32)
 }
 
 fn draw_error(error: impl Display) -> FigureError {

@@ -2,11 +2,10 @@
 
 use super::canvas::{Anchor, Canvas, Ink};
 use super::frame::{Extent, Frame};
-use super::ticks::{Direction, EM as TICK_EM, Ticks, ticks};
+use super::look::Look;
+use super::ticks::{Direction, Ticks, ticks};
 use super::{Axis, Panel, font, mark, range, series};
 
-const TITLE_EM: f64 = 14.0;
-const LABEL_EM: f64 = 13.0;
 /// Length of a tick in pixels.
 const TICK: f64 = 4.0;
 /// Space between a tick and its label.
@@ -19,6 +18,7 @@ const NAMES: f64 = 0.42;
 /// A panel with what must be known before it can be placed. Lengths in pixels.
 pub(super) struct Plan<'a> {
     panel: &'a Panel,
+    look: Look,
     x: Extent,
     y: Extent,
     /// See [`Frame::sideways`].
@@ -38,17 +38,18 @@ pub(super) struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// Plans a panel in a cell of `width` pixels, with a plot of `height` pixels unless categories
     /// at its left need more or less.
-    pub fn new(panel: &'a Panel, width: f64, height: f64) -> Self {
+    pub fn new(panel: &'a Panel, width: f64, height: f64, look: Look) -> Self {
         let lying = panel.lying && !panel.x.categories.is_empty();
-        let sideways = lying || !names_fit(&panel.x, 0.85 * width);
+        let sideways = lying || !names_fit(&panel.x, 0.85 * width, look.tick);
         let mut plan = Self {
             panel,
+            look,
             x: range::of_x(panel),
             y: range::of_y(panel),
             sideways,
             height,
             left: 0.0,
-            title: font::wrap(&panel.title, TITLE_EM, 0.9 * width),
+            title: font::wrap(&panel.title, look.panel, 0.9 * width),
             upright: Ticks::default(),
             names: Vec::new(),
         };
@@ -56,9 +57,9 @@ impl<'a> Plan<'a> {
             let sets = panel.series.len().max(1) as f64;
             let row = (10.0 + 9.0 * sets).max(21.0);
             let rows = panel.x.categories.iter();
-            let lines = rows.map(|name| font::wrap(name, TICK_EM, NAMES * width).len().max(1));
+            let lines = rows.map(|name| font::wrap(name, look.tick, NAMES * width).len().max(1));
             let most = lines.max().unwrap_or(1) as f64;
-            let row = row.max(most * font::line_height(TICK_EM) + 4.0);
+            let row = row.max(most * font::line_height(look.tick) + 4.0);
             plan.height = row * panel.x.categories.len() as f64;
         }
         plan.measure_left(width);
@@ -67,13 +68,13 @@ impl<'a> Plan<'a> {
 
     fn measure_left(&mut self, width: f64) {
         let (axis, extent) = self.upright_axis();
-        self.upright = ticks(axis, extent, self.height, Direction::Upright);
+        self.upright = ticks(axis, extent, self.height, Direction::Upright, self.look.tick);
         let labels = self.upright.labelled.iter();
-        self.names = labels.map(|(_, label)| font::wrap(label, TICK_EM, NAMES * width)).collect();
+        self.names = labels.map(|(_, label)| font::wrap(label, self.look.tick, NAMES * width)).collect();
         let widths = self.names.iter().flatten();
-        let widest = widths.map(|line| font::width(line, TICK_EM)).fold(0.0, f64::max);
-        let label = font::wrap(&axis.label, LABEL_EM, self.height).len() as f64;
-        self.left = label * font::line_height(LABEL_EM) + 4.0 + widest + GAP + TICK;
+        let widest = widths.map(|line| font::width(line, self.look.tick)).fold(0.0, f64::max);
+        let label = font::wrap(&axis.label, self.look.label, self.height).len() as f64;
+        self.left = label * font::line_height(self.look.label) + 4.0 + widest + GAP + TICK;
     }
 
     fn upright_axis(&self) -> (&'a Axis, Extent) {
@@ -89,14 +90,14 @@ impl<'a> Plan<'a> {
         if self.title.is_empty() {
             return 6.0;
         }
-        self.title.len() as f64 * font::line_height(TITLE_EM) + 6.0
+        self.title.len() as f64 * font::line_height(self.look.panel) + 6.0
     }
 
     /// Height of the tick labels and the axis label under a plot in a cell of `width` pixels.
     pub fn below(&self, width: f64) -> f64 {
         let (axis, _) = self.level_axis();
-        let label = font::wrap(&axis.label, LABEL_EM, width - self.left).len() as f64;
-        TICK + GAP + font::line_height(TICK_EM) + label * font::line_height(LABEL_EM) + 4.0
+        let label = font::wrap(&axis.label, self.look.label, width - self.left).len() as f64;
+        TICK + GAP + font::line_height(self.look.tick) + label * font::line_height(self.look.label) + 4.0
     }
 
     /// Draws the panel with the upper left corner of its plot at `left`, `top`, in a cell that ends
@@ -112,7 +113,7 @@ impl<'a> Plan<'a> {
             sideways: self.sideways,
         };
         let (axis, extent) = self.level_axis();
-        let level = ticks(axis, extent, frame.width, Direction::Across);
+        let level = ticks(axis, extent, frame.width, Direction::Across, self.look.tick);
         self.draw_grid(canvas, &frame, &level);
         for region in &self.panel.regions {
             mark::region(canvas, &frame, region);
@@ -170,45 +171,45 @@ impl<'a> Plan<'a> {
         for (at, label) in &level.labelled {
             let x = left + extent.place(*at).nearest() * frame.width;
             canvas.line((x, bottom), (x, bottom + TICK), 1.0, ink);
-            let baseline = bottom + TICK + GAP + 0.8 * TICK_EM;
-            canvas.text(label, (x, baseline), TICK_EM, Anchor::Middle);
+            let baseline = bottom + TICK + GAP + 0.8 * self.look.tick;
+            canvas.text(label, (x, baseline), self.look.tick, Anchor::Middle);
         }
         let (_, extent) = self.upright_axis();
         for ((at, _), lines) in self.upright.labelled.iter().zip(&self.names) {
             let y = pixel_of(frame, extent, *at, self.sideways);
             canvas.line((left - TICK, y), (left, y), 1.0, ink);
-            let line = font::line_height(TICK_EM);
-            let first = y - line * (lines.len() as f64 - 1.0) / 2.0 + 0.36 * TICK_EM;
+            let line = font::line_height(self.look.tick);
+            let first = y - line * (lines.len() as f64 - 1.0) / 2.0 + 0.36 * self.look.tick;
             for (index, text) in lines.iter().enumerate() {
                 let at = (left - TICK - GAP, first + line * index as f64);
-                canvas.text(text, at, TICK_EM, Anchor::End);
+                canvas.text(text, at, self.look.tick, Anchor::End);
             }
         }
     }
 
     fn draw_titles(&self, canvas: &mut Canvas, frame: &Frame) {
         let middle = frame.left + frame.width / 2.0;
-        let line = font::line_height(TITLE_EM);
+        let line = font::line_height(self.look.panel);
         for (index, text) in self.title.iter().rev().enumerate() {
             let baseline = frame.top - 10.0 - line * index as f64;
             // a title wider than its plot may reach over what is left of it, but not out of the panel
-            let end = frame.right() + RIGHT - font::width(text, TITLE_EM) / 2.0;
-            canvas.text(text, (middle.min(end), baseline), TITLE_EM, Anchor::Middle);
+            let end = frame.right() + RIGHT - font::width(text, self.look.panel) / 2.0;
+            canvas.text(text, (middle.min(end), baseline), self.look.panel, Anchor::Middle);
         }
         let (axis, _) = self.level_axis();
-        let line = font::line_height(LABEL_EM);
-        let first = frame.bottom() + TICK + GAP + font::line_height(TICK_EM) + LABEL_EM;
-        let lines = font::wrap(&axis.label, LABEL_EM, frame.width);
+        let line = font::line_height(self.look.label);
+        let first = frame.bottom() + TICK + GAP + font::line_height(self.look.tick) + self.look.label;
+        let lines = font::wrap(&axis.label, self.look.label, frame.width);
         for (index, text) in lines.iter().enumerate() {
             let at = (middle, first + line * index as f64);
-            canvas.text(text, at, LABEL_EM, Anchor::Middle);
+            canvas.text(text, at, self.look.label, Anchor::Middle);
         }
         let (axis, _) = self.upright_axis();
-        let lines = font::wrap(&axis.label, LABEL_EM, self.height);
+        let lines = font::wrap(&axis.label, self.look.label, self.height);
         for (index, text) in lines.iter().enumerate() {
-            let x = frame.left - self.left + LABEL_EM + line * index as f64;
+            let x = frame.left - self.left + self.look.label + line * index as f64;
             let at = (x, frame.top + frame.height / 2.0);
-            canvas.upward_text(text, at, LABEL_EM);
+            canvas.upward_text(text, at, self.look.label);
         }
     }
 }
@@ -220,8 +221,8 @@ fn pixel_of(frame: &Frame, extent: Extent, value: f64, downwards: bool) -> f64 {
 }
 
 /// Whether the category names of an axis fit beside one another on `width` pixels.
-fn names_fit(axis: &Axis, width: f64) -> bool {
+fn names_fit(axis: &Axis, width: f64, em: f64) -> bool {
     let names = axis.categories.iter();
-    let widest = names.map(|name| font::width(name, TICK_EM)).fold(0.0, f64::max);
+    let widest = names.map(|name| font::width(name, em)).fold(0.0, f64::max);
     (widest + 10.0) * axis.categories.len() as f64 <= width
 }

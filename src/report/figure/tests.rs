@@ -1,5 +1,6 @@
 use super::*;
 use crate::report::figure::canvas::{Canvas, Shape};
+use crate::report::figure::look::Look;
 
 fn series(style: Style, points: Vec<Point>) -> Series {
     Series { label: "data".to_string(), colour: Colour::Blue, style, points }
@@ -16,7 +17,7 @@ fn figure(y: Axis, series: Vec<Series>) -> Figure {
 
 fn drawn(figure: &Figure) -> Canvas {
     font::register().expect("the font is readable");
-    sheet::draw(figure)
+    sheet::draw(figure, Look::SCREEN)
 }
 
 fn texts(canvas: &Canvas) -> Vec<&str> {

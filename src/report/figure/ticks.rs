@@ -4,9 +4,6 @@ use super::Axis;
 use super::font;
 use super::frame::Extent;
 
-/// Size of tick labels in pixels to the em.
-pub(super) const EM: f64 = 12.0;
-
 /// The ticks of an axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Ticks {
@@ -23,13 +20,13 @@ pub(super) enum Direction {
     Upright,
 }
 
-/// The finest ticks whose labels do not crowd an axis of `length` pixels.
-pub(super) fn ticks(axis: &Axis, extent: Extent, length: f64, direction: Direction) -> Ticks {
+/// The finest ticks whose labels, of size `em`, do not crowd an axis of `length` pixels.
+pub(super) fn ticks(axis: &Axis, extent: Extent, length: f64, direction: Direction, em: f64) -> Ticks {
     if !axis.categories.is_empty() {
         return categories(axis, extent);
     }
     let candidates = if extent.log { log_candidates(extent) } else { linear_candidates(extent) };
-    let fits = |ticks: &Ticks| fits(ticks, extent, length, direction);
+    let fits = |ticks: &Ticks| fits(ticks, extent, length, direction, em);
     let chosen = candidates.iter().position(fits);
     let mut candidates = candidates;
     match chosen {
@@ -49,15 +46,15 @@ fn categories(axis: &Axis, extent: Extent) -> Ticks {
 }
 
 /// Whether the labels keep a distance from one another.
-fn fits(ticks: &Ticks, extent: Extent, length: f64, direction: Direction) -> bool {
+fn fits(ticks: &Ticks, extent: Extent, length: f64, direction: Direction, em: f64) -> bool {
     let spans: Vec<(f64, f64)> = ticks
         .labelled
         .iter()
         .filter_map(|(at, label)| {
             let middle = extent.share(*at)? * length;
             let half = match direction {
-                Direction::Across => font::width(label, EM) / 2.0 + 7.0,
-                Direction::Upright => 1.25 * EM,
+                Direction::Across => font::width(label, em) / 2.0 + 7.0,
+                Direction::Upright => 1.25 * em,
             };
             Some((middle - half, middle + half))
         })
