@@ -94,7 +94,7 @@ fn keys_and_mouse_reach_the_page() {
     let Some(browser) = browser::shared() else { return };
     let place = tempfile::tempdir().unwrap();
     let file = place.path().join("index.html");
-    let body = "<button onclick='clicks++'>b</button><input><div style='height: 3000px'></div>
+    let body = "<button onclick='clicks++'>b</button><input><a download='x.csv' href='data:text/csv,1'>a</a><div style='height: 3000px'></div>
         <script>let clicks = 0, keys = [], moves = 0;
         addEventListener('keydown', (e) => keys.push(e.shiftKey + e.key));
         addEventListener('mousemove', (e) => moves += e.buttons);</script>";
@@ -111,6 +111,8 @@ fn keys_and_mouse_reach_the_page() {
     assert_eq!(page.text("keys.join()"), "falseEnter,false ,falseTab,falsea,false ,false1,trueTab");
     page.drag((10.0, 100.0), (50.0, 120.0));
     assert_eq!(page.js("moves"), 2);
+    page.click("a");
+    assert_eq!(page.saved("x.csv"), b"1");
     page.wheel(100.0, 100.0, 500.0);
     page.wait_for("scrollY === 500");
 }

@@ -88,9 +88,10 @@ pub fn shared() -> Option<Arc<Browser>> {
         let why = format!("none of {} is here, and {CHOSEN} names no other", NAMES.join(", "));
         let needed = NEEDED.iter().find(|name| env::var_os(name).is_some_and(|value| !value.is_empty()));
         assert!(needed.is_none(), "no browser, and {} is set: {why}", needed.unwrap());
-        // past cargo, which keeps what a passing test prints
+        // cargo keeps what a passing test prints, but not what it writes
         let name = thread::current().name().unwrap_or("a test").to_owned();
-        writeln!(stderr(), "skipped: {name} needs Chromium: {why}").unwrap();
+        let mut past_cargo = stderr();
+        writeln!(past_cargo, "skipped: {name} needs Chromium: {why}").unwrap();
         return None;
     };
     let browser = Arc::new(Browser::start(&program));

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::cell::RefCell;
 use std::fmt::Write;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -46,7 +46,15 @@ impl Page {
         // pages side by side all take themselves for the one in front
         page.call("Emulation.setFocusEmulationEnabled", json!({ "enabled": true }));
         page.resize(1280, 800, 1.0);
+        let (folder, context) = (page.downloads(), &page.context);
+        let save = json!({ "behavior": "allow", "downloadPath": folder, "browserContextId": context });
+        browser.call("Browser.setDownloadBehavior", save);
         page
+    }
+
+    /// Where it saves files.
+    fn downloads(&self) -> PathBuf {
+        self.browser.folder.path().join(&self.context)
     }
 
     /// Opens a file.
@@ -120,6 +128,16 @@ impl Page {
         let bytes = STANDARD.decode(shot["data"].as_str().unwrap()).unwrap();
         fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).with_extension("png"), &bytes).unwrap();
         bytes
+    }
+
+    /// A file that the page offers for saving, once it is there.
+    pub fn saved(&self, name: &str) -> Vec<u8> {
+        let (file, end) = (self.downloads().join(name), Instant::now() + PATIENCE);
+        while !file.exists() {
+            assert!(Instant::now() < end, "{name} was never saved\ncomplaints: {:?}", self.complaints());
+            thread::sleep(Duration::from_millis(5));
+        }
+        fs::read(file).unwrap()
     }
 
     /// What went wrong so far: exceptions nobody caught, errors and warnings that were logged.
