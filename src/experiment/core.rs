@@ -1,6 +1,7 @@
 //! Which of two cores samples a cell: the textbook, one path at a time in double precision, or the fast path.
 
 use super::block::Block;
+use super::error::Error;
 use super::ledger::Stream;
 use super::plan::CellPlan;
 use super::run::block_of;
@@ -10,6 +11,7 @@ use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
+use std::str::FromStr;
 
 /// What follows the paths of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,6 +25,17 @@ pub enum Core {
 }
 
 impl Core {
+    /// Both of them.
+    pub const ALL: [Core; 2] = [Core::Textbook, Core::Fast];
+
+    /// What files and the command line call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Core::Textbook => "textbook",
+            Core::Fast => "fast",
+        }
+    }
+
     /// This core where the scene offers it to the estimator, the textbook elsewhere.
     pub fn if_offered(self, scene: &Scene, estimator: &Estimator) -> Self {
         if Fast::of(scene, estimator).is_ok() { self } else { Core::Textbook }
@@ -48,10 +61,16 @@ impl Core {
 
 impl fmt::Display for Core {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Core::Textbook => "textbook",
-            Core::Fast => "fast",
-        })
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Core {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        let named = Core::ALL.into_iter().find(|core| core.name() == name);
+        named.ok_or_else(|| Error::Refused(format!("no core `{name}`; there are textbook and fast")))
     }
 }
 

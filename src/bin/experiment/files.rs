@@ -1,7 +1,7 @@
 //! Finding and reading experiment files.
 
 use crate::args::Options;
-use furnace::experiment::{Core, Error, Overrides, Plan};
+use furnace::experiment::{Error, Overrides, Plan};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -51,7 +51,7 @@ impl Source {
             samples: options.samples,
             filter: options.filter.clone(),
             only: options.only.clone(),
-            core: options.core.map(Core::from),
+            core: options.core,
             quick: options.quick,
             force: options.force,
         };
