@@ -8,13 +8,14 @@ use super::run::block_of;
 use crate::estimator::{Estimator, Tally};
 use crate::fast::{self, Fast, PathTracer};
 use crate::scene::Scene;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
 /// What follows the paths of a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Core {
     /// The estimator itself, in double precision.

@@ -11,6 +11,7 @@ mod family;
 pub mod figure;
 mod forest;
 pub mod images;
+pub mod json;
 pub mod lookup;
 mod mistakes;
 pub mod mitsuba;

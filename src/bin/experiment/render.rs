@@ -3,6 +3,7 @@
 use crate::args::{Options, Render};
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, subject};
+use anstream::{eprintln, println};
 use furnace::experiment::{CellPlan, Error, run_cell};
 use furnace::report::images;
 use furnace::sampling::Address;

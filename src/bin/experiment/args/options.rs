@@ -1,7 +1,7 @@
 //! What can be said of every command.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use clap::{Args, ColorChoice, ValueEnum};
 use furnace::experiment::Core;
 use std::path::PathBuf;
 
@@ -46,6 +46,9 @@ pub struct Options {
     /// What goes to standard output
     #[arg(long, value_enum, default_value_t = Format::Text, global = true)]
     pub format: Format,
+    /// Colours: of what goes to a terminal, unless NO_COLOR says otherwise; or in any case, or never
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t, global = true)]
+    pub color: ColorChoice,
     /// No progress, only results
     #[arg(short, long, global = true)]
     pub quiet: bool,

@@ -1,14 +1,17 @@
 //! What is done without an experiment file: an image, a reference, a scene for another renderer.
 
+use super::complete;
 use clap::Args;
+use clap_complete::ArgValueCandidates;
 use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct Render {
     /// A scene with a camera: its name, such as cornell_box or smallpt, or FILE.toml:NAME
+    #[arg(add = ArgValueCandidates::new(complete::scenes))]
     pub scene: String,
     /// explicit, implicit, light_tracing or photon_map
-    #[arg(long, default_value = "explicit")]
+    #[arg(long, default_value = "explicit", add = ArgValueCandidates::new(complete::estimators))]
     pub estimator: String,
     /// Samples a pixel
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u64).range(2..))]
@@ -24,6 +27,7 @@ pub struct Render {
 #[derive(Args)]
 pub struct Reference {
     /// Name of a scene, such as cornell_box or furnace, or FILE.toml:NAME for a scene of an experiment file
+    #[arg(add = ArgValueCandidates::new(complete::scenes))]
     pub scene: String,
     /// Relative standard error of the image's mean, worst channel, at which it is good enough
     #[arg(long, value_name = "ERROR", default_value_t = 1e-3, value_parser = relative_error)]
@@ -33,7 +37,7 @@ pub struct Reference {
         value_parser = clap::value_parser!(u64).range(2..=1_000_000_000_000_000))]
     pub max_samples: u64,
     /// explicit, implicit or light_tracing; the reference will not judge estimators of the same kind
-    #[arg(long, default_value = "explicit")]
+    #[arg(long, default_value = "explicit", add = ArgValueCandidates::new(complete::estimators))]
     pub estimator: String,
     /// Pixels along each edge, if the scene has a camera
     #[arg(long, default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=4096))]
@@ -52,6 +56,7 @@ pub fn relative_error(text: &str) -> Result<f64, String> {
 pub struct Export {
     /// cornell_box, cornell_empty, cornell_flush, furnace, furnace_box, a scene of lectures such as veach_mis, or one of the
     /// gallery
+    #[arg(add = ArgValueCandidates::new(complete::scenes))]
     pub scene: String,
     /// Where to write, instead of standard output; triangles go into OBJ files beside it
     #[arg(short, long, value_name = "FILE.xml")]
