@@ -1,9 +1,10 @@
 //! How photons count by their distance, and which of them are gathered.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Weight of a photon by its distance d from the point that is looked at, within the radius r.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kernel {
     /// 1: all alike.
@@ -12,6 +13,7 @@ pub enum Kernel {
     /// 1 - d / (c r) [Jensen 1996].
     Cone {
         /// c >= 1; 1 brings the weight down to 0 at the rim.
+        #[schemars(range(min = 1))]
         c: f64,
     },
     /// 1 - d² / r² [Epanechnikov 1969; Silverman 1986, sec. 4.2].
@@ -59,7 +61,7 @@ pub enum Gather {
 }
 
 /// Whether the k-th of the k nearest photons counts, by which their radius is measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Last {
     /// k photons within the distance of the k-th: too bright by k / (k - 1) [García et al. 2012].

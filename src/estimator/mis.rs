@@ -1,6 +1,7 @@
 //! Which technique finds the light, and how two of them are combined [Veach & Guibas 1995].
 
 use crate::sampling::PdfW;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How direct light is found.
@@ -17,7 +18,7 @@ pub enum Technique {
 }
 
 /// How the densities of two techniques make weights.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Heuristic {
     /// In proportion to the density.

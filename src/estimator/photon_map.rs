@@ -11,6 +11,7 @@ use super::particles::{Particle, Particles};
 use super::photons::{Photon, Photons};
 use super::{BINS, Ctx, Estimate, Property, Roulette};
 use crate::scene::{Directions, Hit, LightSampling, Ray, Rgb};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A map of photons, and what is gathered from it.
@@ -33,7 +34,7 @@ pub struct PhotonMap {
 }
 
 /// How direct light is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DirectLight {
     /// By its photons.

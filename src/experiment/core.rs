@@ -1,18 +1,21 @@
 //! Which of two cores samples a cell: the textbook, one path at a time in double precision, or the fast path.
 
 use super::block::Block;
+use super::error::Error;
 use super::ledger::Stream;
 use super::plan::CellPlan;
 use super::run::block_of;
 use crate::estimator::{Estimator, Tally};
 use crate::fast::{self, Fast, PathTracer};
 use crate::scene::Scene;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
+use std::str::FromStr;
 
 /// What follows the paths of a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Core {
     /// The estimator itself, in double precision.
@@ -23,6 +26,17 @@ pub enum Core {
 }
 
 impl Core {
+    /// Both of them.
+    pub const ALL: [Core; 2] = [Core::Textbook, Core::Fast];
+
+    /// What files and the command line call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Core::Textbook => "textbook",
+            Core::Fast => "fast",
+        }
+    }
+
     /// This core where the scene offers it to the estimator, the textbook elsewhere.
     pub fn if_offered(self, scene: &Scene, estimator: &Estimator) -> Self {
         if Fast::of(scene, estimator).is_ok() { self } else { Core::Textbook }
@@ -48,10 +62,16 @@ impl Core {
 
 impl fmt::Display for Core {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Core::Textbook => "textbook",
-            Core::Fast => "fast",
-        })
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Core {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        let named = Core::ALL.into_iter().find(|core| core.name() == name);
+        named.ok_or_else(|| Error::Refused(format!("no core `{name}`; there are textbook and fast")))
     }
 }
 

@@ -87,6 +87,15 @@ impl Error {
         Error::at(file, source, error.span().unwrap_or(0..0), message)
     }
 
+    /// A name that none of the `known` things of this kind has.
+    pub fn unknown(kind: &str, name: &str, known: &[&str]) -> Self {
+        let suggestion = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`? There are"),
+            None => "there are".to_owned(),
+        };
+        Error::Refused(format!("no {kind} `{name}`; {suggestion} {}", known.join(", ")))
+    }
+
     /// A failed attempt to read or write.
     pub fn io(what: &'static str, path: &Path, source: std::io::Error) -> Self {
         Error::Io { what, path: path.to_owned(), source }

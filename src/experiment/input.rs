@@ -1,6 +1,7 @@
 //! Reading what a user wrote: each wrong value is refused where it stands, with what would be right.
 
 mod scene;
+pub mod schema;
 
 pub use scene::*;
 

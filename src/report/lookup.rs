@@ -7,6 +7,7 @@ use crate::stats::Verdict;
 pub struct Lookup<'a> {
     /// The plan.
     pub plan: &'a Plan,
+    rows: &'a [Row],
     by_cell: Vec<Vec<&'a Row>>,
 }
 
@@ -15,12 +16,17 @@ impl<'a> Lookup<'a> {
     pub fn new(plan: &'a Plan, rows: &'a [Row]) -> Self {
         let mut by_cell = vec![Vec::new(); plan.cells.len()];
         rows.iter().for_each(|row| by_cell[row.cell].push(row));
-        Lookup { plan, by_cell }
+        Lookup { plan, rows, by_cell }
     }
 
     /// The rows of a cell; none if it was not finished.
     pub fn cell(&self, cell: usize) -> &[&'a Row] {
         &self.by_cell[cell]
+    }
+
+    /// All rows.
+    pub fn rows(&self) -> &'a [Row] {
+        self.rows
     }
 
     /// One row.

@@ -13,6 +13,7 @@ mod family;
 pub mod figure;
 mod forest;
 pub mod images;
+pub mod json;
 pub mod latex;
 pub mod lookup;
 pub mod metrics;

@@ -6,6 +6,7 @@ use crate::sampling::warp::{
     Frame, cosine_hemisphere, cosine_hemisphere_pdf, uniform_hemisphere, uniform_hemisphere_pdf,
 };
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_1_PI;
 
@@ -57,7 +58,7 @@ pub enum Bsdf {
 
 /// The density from which directions leaving a Lambert surface are drawn. A glossy one does not ask: there directions
 /// always go with the facets that are seen, for any other choice has an unbounded weight in a narrow lobe.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Directions {
     /// cos θ / π: the weight is the albedo.

@@ -5,6 +5,7 @@ use super::geometry::NOWHERE;
 use crate::sampling::Stream;
 use crate::sampling::warp::{Frame, cosine_hemisphere, disk};
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -72,7 +73,7 @@ fn starts_at_the_eye(near: &f64) -> bool {
 }
 
 /// A thin lens, uniform over its area.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lens {
     /// Its radius [scene units].

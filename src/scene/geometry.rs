@@ -1,6 +1,7 @@
 //! Rays and shapes. Distances are in units of the ray's direction, which is a unit vector except for shadow rays.
 
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -19,36 +20,44 @@ pub struct Ray {
 pub const NOWHERE: u32 = u32::MAX;
 
 /// Points center + a half_u + b half_v with a, b in [-1, 1]; front = half_u x half_v.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rectangle {
     /// Centre.
+    #[schemars(with = "[f64; 3]")]
     pub center: DVec3,
     /// Half of one edge.
+    #[schemars(with = "[f64; 3]")]
     pub half_u: DVec3,
     /// Half of the other edge, perpendicular to the first.
+    #[schemars(with = "[f64; 3]")]
     pub half_v: DVec3,
 }
 
 /// Corners counter-clockwise as seen from the front.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Triangle {
     /// First corner.
+    #[schemars(with = "[f64; 3]")]
     pub a: DVec3,
     /// Second corner.
+    #[schemars(with = "[f64; 3]")]
     pub b: DVec3,
     /// Third corner.
+    #[schemars(with = "[f64; 3]")]
     pub c: DVec3,
 }
 
 /// A flat circular plate.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disk {
     /// Centre.
+    #[schemars(with = "[f64; 3]")]
     pub center: DVec3,
     /// Unit normal of the front.
+    #[schemars(with = "[f64; 3]")]
     pub normal: DVec3,
     /// Radius.
     pub radius: f64,

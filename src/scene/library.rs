@@ -8,6 +8,7 @@ use super::lecture::Lecture;
 use super::many_spheres;
 use super::{Material, PointLight, Rgb, Scene, Sensor, Shape, Sky, Surface};
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A scene and its parameters, all of them resolved.
@@ -96,7 +97,7 @@ pub struct Setting {
 }
 
 /// How a closed-form scene is looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum View {
     /// Radiance along one ray.

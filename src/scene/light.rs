@@ -7,6 +7,7 @@ use super::sky::{FAR, SKY, Sky};
 use super::{Hit, Ray, Rgb, Shape, Surface, geometry::NOWHERE, solid_angle};
 use crate::sampling::{PdfA, PdfW};
 use glam::DVec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How light is sampled: which emitter, and where on it.
@@ -26,7 +27,7 @@ impl LightSampling {
 }
 
 /// How a point on an emitting surface is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Points {
     /// Uniformly over the emitter's area.
@@ -38,7 +39,7 @@ pub enum Points {
 }
 
 /// How one of several emitters is picked.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Pick {
     /// In proportion to power, all channels added.

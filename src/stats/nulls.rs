@@ -5,6 +5,7 @@
 //! by [`super::calibrate`].
 
 use super::source::Source;
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 use std::fmt;
 
@@ -13,19 +14,21 @@ pub use super::calibrate::{
 };
 
 /// A law of non-negative samples. Written in files as `{ rare = { p = 0.001 } }`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Law {
     /// 1/p with probability p, else 0: mean 1.
     Rare {
         /// In (0, 1].
         #[serde(deserialize_with = "p")]
+        #[schemars(range(max = 1), extend("exclusiveMinimum" = 0))]
         p: f64,
     },
     /// exp(σ Z - σ²/2) with Z standard normal: mean 1, all moments finite.
     Lognormal {
         /// In (0, 3]: at 3 the variance is 8100, and nothing is learned from any number of samples that one can take.
         #[serde(deserialize_with = "sigma")]
+        #[schemars(range(max = 3), extend("exclusiveMinimum" = 0))]
         sigma: f64,
     },
     /// Roulette in a furnace of emission 1: Σ (albedo/q)^k over the steps k = 0, 1, ... that are survived, each with
@@ -34,9 +37,11 @@ pub enum Law {
     Walk {
         /// In [0, 1).
         #[serde(deserialize_with = "albedo")]
+        #[schemars(range(min = 0), extend("exclusiveMaximum" = 1))]
         albedo: f64,
         /// In (0, 1).
         #[serde(deserialize_with = "q")]
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
         q: f64,
     },
 }

@@ -1,10 +1,12 @@
 //! Claims without reports: a paragraph an experiment.
 
-use crate::args::Options;
-use crate::run::{sample, status};
+use crate::args::{Format, Options};
+use crate::run::{json_line, sample, status};
 use crate::{INTERRUPTED, study};
+use anstream::println;
 use furnace::experiment::row::CHANNELS;
 use furnace::experiment::{Error, Plan, verdict};
+use furnace::report::{Lookup, terminal};
 use furnace::stats::Verdict;
 use std::sync::atomic::AtomicBool;
 
@@ -15,6 +17,12 @@ pub fn one(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Erro
     }
     let (cells, _) = sample(plan, options, stop)?;
     let rows = verdict::rows(plan, &cells);
+    let interrupted = cells.iter().any(Option::is_none);
+    let code = if interrupted { INTERRUPTED } else { status(plan, &rows) };
+    if options.format == Format::Json {
+        println!("{}", json_line(&Lookup::new(plan, &rows), interrupted, None, None));
+        return Ok(code);
+    }
     let judged = rows.iter().filter(|row| row.verdict.is_some()).count();
     let held = rows.iter().filter(|row| row.verdict == Some(Verdict::Pass)).count();
     println!("{}: {held} of {judged} questions passed", plan.name);
@@ -25,9 +33,9 @@ pub fn one(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Erro
             let channel = row.channel.map_or("", |c| CHANNELS[c]);
             let index = row.estimand.index().map_or_else(String::new, |i| format!(" {i}"));
             let (label, estimand, note) = (plan.label(cell), row.estimand, &row.note);
+            let verdict = terminal::verdict(verdict);
             println!("    {verdict}: {label}, {estimand}{index} {channel}: {note}");
         }
     }
-    let interrupted = cells.iter().any(Option::is_none);
-    Ok(if interrupted { INTERRUPTED } else { status(plan, &rows) })
+    Ok(code)
 }

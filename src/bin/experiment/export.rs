@@ -3,6 +3,7 @@
 use crate::HELD;
 use crate::args::{Export, Format, Options};
 use crate::subject::{Details, named};
+use anstream::print;
 use furnace::experiment::Error;
 use furnace::report::mitsuba::{self, Placement};
 use std::path::Path;

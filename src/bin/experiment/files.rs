@@ -1,12 +1,9 @@
 //! Finding and reading experiment files.
 
-use crate::args::Options;
-use furnace::experiment::{Core, Error, Overrides, Plan};
+use crate::args::{Options, is_command};
+use furnace::experiment::{Error, Overrides, Plan};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Names that an experiment must not have, because they are commands.
-const COMMANDS: [&str; 8] = ["list", "plan", "report", "figure", "render", "reference", "export", "help"];
 
 /// An experiment file with its text.
 pub struct Source {
@@ -33,7 +30,7 @@ impl Source {
         }
         let text = fs::read_to_string(&file).map_err(|e| Error::io("cannot read", &file, e))?;
         let name = file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        if COMMANDS.contains(&name.as_str()) {
+        if is_command(&name) {
             return Err(Error::Refused(format!(
                 "{}: `{name}` is a command; rename the file",
                 file.display()
@@ -51,7 +48,7 @@ impl Source {
             samples: options.samples,
             filter: options.filter.clone(),
             only: options.only.clone(),
-            core: options.core.map(Core::from),
+            core: options.core,
             quick: options.quick,
             force: options.force,
         };
@@ -77,7 +74,7 @@ impl Source {
 }
 
 /// The nearest folder `experiments/`, from here upwards.
-fn folder() -> Option<PathBuf> {
+pub fn folder() -> Option<PathBuf> {
     let here = std::env::current_dir().ok()?;
     let found = here.ancestors().map(|a| a.join("experiments")).find(|folder| folder.is_dir())?;
     // shorter messages, where the folder is right here
@@ -98,6 +95,13 @@ pub fn names() -> Result<Vec<String>, Error> {
         .collect();
     names.sort();
     Ok(names)
+}
+
+/// What an experiment asks, if its file can be read.
+pub fn question(name: &str) -> Option<String> {
+    let text = fs::read_to_string(folder()?.join(format!("{name}.toml"))).ok()?;
+    let table: toml::Table = toml::from_str(&text).ok()?;
+    table.get("question")?.as_str().map(str::to_owned)
 }
 
 /// Applies `path.to.key=value` to the text of a file; the value is TOML, or else a string.

@@ -3,20 +3,26 @@
 mod args;
 mod baseline;
 mod claims;
+mod colour;
+mod completions;
 mod export;
 mod figure;
 mod files;
+mod new;
 mod plans;
 mod progress;
 mod provenance;
 mod reference;
 mod render;
 mod run;
+mod schema;
 mod study;
 mod subject;
 
+use anstream::eprintln;
 use args::{Cli, Command, Format};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
+use clap_complete::CompleteEnv;
 use furnace::experiment::Error;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -32,7 +38,9 @@ const REFUSED: u8 = 2;
 const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
+    CompleteEnv::with_factory(Cli::command).complete();
     let cli = Cli::parse();
+    colour::choose(cli.options.color);
     let stop = Arc::new(AtomicBool::new(false));
     let raised = Arc::clone(&stop);
     if let Err(error) = ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed)) {
@@ -41,7 +49,7 @@ fn main() -> ExitCode {
     match dispatch(&cli, &stop) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("{}", colour::error(&error));
             ExitCode::from(REFUSED)
         }
     }
@@ -58,6 +66,9 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
         Some(Command::Plan { names, margin }) => plans::plans(names, *margin, &cli.options),
         Some(Command::Report { names }) => run::reports(names, &cli.options),
         Some(Command::Figure(figure)) => figure::figure(figure, &cli.options),
+        Some(Command::New(new)) => new::write(new),
+        Some(Command::Schema { of }) => Ok(schema::print(*of)),
+        Some(Command::Completions { shell }) => completions::print(shell),
         Some(Command::Export(export)) => export::export(export, &cli.options),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),
         Some(Command::Reference(reference)) => reference::reference(reference, &cli.options, stop),

@@ -1,5 +1,6 @@
 //! How far a run has come: a bar on a terminal, a line a cell elsewhere. All of it on standard error.
 
+use anstream::eprintln;
 use furnace::experiment::Plan;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, stderr};

@@ -3,6 +3,7 @@
 use crate::args::{Options, Reference};
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, NOT_HELD, files, subject};
+use anstream::{eprintln, println};
 use furnace::experiment::Error;
 use furnace::experiment::making::{self, Ended, Goal};
 use furnace::report::plots;

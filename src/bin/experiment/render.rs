@@ -3,7 +3,8 @@
 use crate::args::{Options, Render};
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, subject};
-use furnace::experiment::{CellPlan, Core, Error, run_cell};
+use anstream::{eprintln, println};
+use furnace::experiment::{CellPlan, Error, run_cell};
 use furnace::report::images;
 use furnace::sampling::Address;
 use furnace::truth::Truth;
@@ -18,7 +19,7 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
     if width * height == 1 {
         return Err(Error::Refused(format!("{} has no camera, so there is no image to render", args.scene)));
     }
-    let core = options.core.map_or(Core::Textbook, Core::from).if_offered(&scene.build(), &estimator);
+    let core = options.core.unwrap_or_default().if_offered(&scene.build(), &estimator);
     let plan = CellPlan {
         address: Address::of(&[
             "render",

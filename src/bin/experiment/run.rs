@@ -5,9 +5,11 @@ use crate::baseline::{self, Wanted};
 use crate::files::{self, Source};
 use crate::progress::Progress;
 use crate::{HELD, INTERRUPTED, NOT_HELD, claims, provenance, study};
+use anstream::{eprintln, println};
 use furnace::experiment::baseline::Comparison;
 use furnace::experiment::store::{self, Store, Stored};
 use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
+use furnace::report::json::{self, Content, Object};
 use furnace::report::run::Run;
 use furnace::report::{self, Lookup, answer, overview, terminal};
 use std::path::Path;
@@ -18,7 +20,10 @@ use std::time::Instant;
 pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
     let every = if options.all { files::names()? } else { Vec::new() };
     let names = if options.all { &every } else { names };
-    let fresh = Options { seed: options.seed.or_else(|| options.claims.then(fresh_seed)), ..options.clone() };
+    let fresh = Options {
+        seed: options.seed.or_else(|| options.claims.then(|| fresh_seed(options.format))),
+        ..options.clone()
+    };
     let options = &fresh;
     let sources = names.iter().map(|name| Source::read(name, options)).collect::<Result<Vec<_>, _>>()?;
     // a mistake in the last file shall not cost the time of the first
@@ -39,10 +44,13 @@ pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8,
 }
 
 /// A seed that nobody has chosen; it is printed, so that the run can be repeated.
-fn fresh_seed() -> u64 {
+fn fresh_seed(format: Format) -> u64 {
     let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
     let seed = now.map_or(0, |now| now.as_nanos() as u64 % 1_000_000_007);
-    println!("seed {seed}: --seed {seed} repeats this");
+    // objects name their seed
+    if format != Format::Json {
+        println!("seed {seed}: --seed {seed} repeats this");
+    }
     seed
 }
 
@@ -86,7 +94,7 @@ fn one(
     let partial = format!("{}-interrupted", source.name);
     let folder = store.publish(interrupted.then_some(partial.as_str()))?;
     overview::write(&source.reports(options))?;
-    print(plan, &rows, &folder, comparison.as_ref(), options);
+    print(plan, &rows, interrupted, &folder, comparison.as_ref(), options);
     wanted.save(plan, &stored.cells, &rows, run.commit)?;
     if interrupted {
         eprintln!(
@@ -131,23 +139,30 @@ pub fn status(plan: &Plan, rows: &[Row]) -> u8 {
     if mistake::all_held(plan, rows) { HELD } else { NOT_HELD }
 }
 
-fn print(plan: &Plan, rows: &[Row], folder: &Path, comparison: Option<&Comparison>, options: &Options) {
+/// The object of a run.
+pub fn json_line(
+    lookup: &Lookup<'_>,
+    interrupted: bool,
+    folder: Option<&Path>,
+    comparison: Option<&Comparison>,
+) -> String {
+    Object::new(lookup.plan, Content::Run(json::Run::new(lookup, interrupted, folder, comparison))).line()
+}
+
+fn print(
+    plan: &Plan,
+    rows: &[Row],
+    interrupted: bool,
+    folder: &Path,
+    comparison: Option<&Comparison>,
+    options: &Options,
+) {
     let lookup = Lookup::new(plan, rows);
-    let sentences = answer::sentences(&lookup);
-    let page = folder.join("index.html");
     if options.format == Format::Json {
-        let cell = |i: usize| {
-            let verdict = lookup.verdict(i).map(|v| v.to_string());
-            serde_json::json!({ "cell": plan.label(&plan.cells[i]), "verdict": verdict })
-        };
-        let cells: Vec<_> = (0..plan.cells.len()).filter(|&i| !lookup.cell(i).is_empty()).map(cell).collect();
-        let object = serde_json::json!({
-            "schema": 1, "experiment": plan.name, "answer": sentences, "cells": cells, "page": page,
-            "baseline": report::baseline::json(comparison),
-        });
-        println!("{object}");
+        println!("{}", json_line(&lookup, interrupted, Some(folder), comparison));
         return;
     }
+    let sentences = answer::sentences(&lookup);
     println!("{}", plan.spec.question);
     println!();
     println!("{}", terminal::table(&lookup));
@@ -155,7 +170,7 @@ fn print(plan: &Plan, rows: &[Row], folder: &Path, comparison: Option<&Compariso
         println!("{}", report::baseline::text(comparison));
     }
     sentences.iter().for_each(|sentence| println!("- {sentence}"));
-    println!("\nThe page: {}", page.display());
+    println!("\nThe page: {}", folder.join("index.html").display());
 }
 
 /// Rebuilds the reports of stored runs.
@@ -179,7 +194,7 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         store.write_cells(&stored)?;
         let folder = store.publish(None)?;
         overview::write(&source.reports(options))?;
-        print(&plan, &rows, &folder, comparison.as_ref(), options);
+        print(&plan, &rows, stored.cells.iter().any(Option::is_none), &folder, comparison.as_ref(), options);
         wanted.save(&plan, &stored.cells, &rows, run.commit)?;
         worst = worst.max(status(&plan, &rows));
     }

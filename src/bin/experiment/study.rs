@@ -5,9 +5,11 @@ use crate::files::Source;
 use crate::progress::Progress;
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, NOT_HELD, provenance};
+use anstream::println;
 use furnace::experiment::store::Store;
 use furnace::experiment::study::{Detection, detect};
 use furnace::experiment::{Error, Plan};
+use furnace::report::json::{Content, Object, Study};
 use furnace::report::overview::{self, Summary};
 use furnace::report::run::{self, Run};
 use furnace::report::study::{self, Studied};
@@ -51,8 +53,12 @@ pub fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -
 pub fn claims(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
     let (outcome, ..) = sample(plan, options, stop)?;
     let studied = Studied::new(plan, &outcome.detections, &outcome.nulls);
-    println!("{}:", plan.name);
-    study::sentences(&studied).iter().for_each(|sentence| println!("    {sentence}"));
+    if options.format == Format::Json {
+        println!("{}", json_line(&studied, &outcome, None));
+    } else {
+        println!("{}:", plan.name);
+        study::sentences(&studied).iter().for_each(|sentence| println!("    {sentence}"));
+    }
     Ok(if outcome.whole { status(&studied) } else { INTERRUPTED })
 }
 
@@ -140,18 +146,16 @@ fn write(plan: &Plan, outcome: &Outcome, run: &Run, store: &Store) -> Result<u8,
 }
 
 fn print(plan: &Plan, outcome: &Outcome, folder: &Path, options: &Options) {
-    let Outcome { detections, nulls, .. } = outcome;
-    let sentences = study::sentences(&Studied::new(plan, detections, nulls));
-    let page = folder.join("index.html");
+    let studied = Studied::new(plan, &outcome.detections, &outcome.nulls);
     if options.format == Format::Json {
-        let object = serde_json::json!({
-            "schema": 1, "experiment": plan.name, "answer": sentences, "detections": detections, "nulls": nulls,
-            "page": page,
-        });
-        println!("{object}");
+        println!("{}", json_line(&studied, outcome, Some(folder)));
         return;
     }
     println!("{}\n", plan.spec.question);
-    sentences.iter().for_each(|sentence| println!("- {sentence}"));
-    println!("\nThe page: {}", page.display());
+    study::sentences(&studied).iter().for_each(|sentence| println!("- {sentence}"));
+    println!("\nThe page: {}", folder.join("index.html").display());
+}
+
+fn json_line(studied: &Studied<'_>, outcome: &Outcome, folder: Option<&Path>) -> String {
+    Object::new(studied.plan(), Content::Study(Study::new(studied, !outcome.whole, folder))).line()
 }

@@ -38,6 +38,14 @@ fn scene_of_file(file: &str, label: &str, options: &Options) -> Result<SceneKind
     }
 }
 
+/// Names of all scenes.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    NAMES.into_iter().chain(EXHIBITS.iter().map(|exhibit| exhibit.name))
+}
+
+/// Names of estimators that need no parameters.
+pub const ESTIMATORS: [&str; 4] = ["explicit", "implicit", "light_tracing", "photon_map"];
+
 /// All but those of the gallery.
 const NAMES: [&str; 16] = [
     "cornell_box",
@@ -91,8 +99,8 @@ pub fn named(name: &str, details: Details) -> Result<SceneKind, Error> {
             usual(&SceneSpec::Exhibit { name: name.to_owned(), parameter: None })?
         }
         _ => {
-            let known: Vec<&str> = NAMES.into_iter().chain(EXHIBITS.iter().map(|e| e.name)).collect();
-            return Err(Error::Refused(format!("no scene `{name}`; there are {}", known.join(", "))));
+            let known: Vec<&str> = names().collect();
+            return Err(Error::unknown("scene", name, &known));
         }
     };
     has("--resolution", resolution.is_some() && !is_image(name))?;
@@ -101,7 +109,20 @@ pub fn named(name: &str, details: Details) -> Result<SceneKind, Error> {
     Ok(kind)
 }
 
-fn is_image(name: &str) -> bool {
+/// How an experiment file names the scene, at this resolution if it is an image.
+pub fn written(name: &str, resolution: u32) -> String {
+    if EXHIBITS.iter().any(|exhibit| exhibit.name == name) {
+        return format!("{{ exhibit = {{ name = \"{name}\" }} }}");
+    }
+    match (name.strip_suffix("_point"), is_image(name)) {
+        (Some(name), _) => format!("{{ {name} = {{ point = true, resolution = {resolution} }} }}"),
+        (None, true) => format!("{{ {name} = {{ resolution = {resolution} }} }}"),
+        (None, false) => format!("\"{name}\""),
+    }
+}
+
+/// Whether a scene is looked at by a camera whose resolution can be chosen.
+pub fn is_image(name: &str) -> bool {
     matches!(name, "cornell_box" | "cornell" | "cornell_empty") || image(name, None).is_some()
 }
 
@@ -161,9 +182,7 @@ pub fn estimator(name: &str, resolution: (u32, u32)) -> Result<Estimator, Error>
             directions,
             roulette: Roulette { from: 0, ..roulette },
         })),
-        other => Err(Error::Refused(format!(
-            "no estimator `{other}`; there are explicit, implicit, light_tracing, photon_map"
-        ))),
+        other => Err(Error::unknown("estimator", other, &ESTIMATORS)),
     }
 }
 

@@ -1,11 +1,12 @@
 //! What files claim of cells, and what they want drawn.
 
-use crate::experiment::input;
+use crate::experiment::input::{self, schema};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use toml::Spanned;
 
 /// What is claimed of every cell for which it is legal.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Claim {
     /// The mean, total and per bounce, is what theory or a reference says (for a clamped cell: theory's biased mean).
@@ -19,7 +20,7 @@ pub enum Claim {
     Cost(Limits),
     /// The error of cells that are cut into runs falls as theory says: as which power of the number of samples. The margin
     /// is absolute, in exponents.
-    Rate(Spanned<Limits>),
+    Rate(#[schemars(with = "Limits")] Spanned<Limits>),
     /// Paths have the lengths that theory's law of roulette gives; can be refuted, never shown.
     Length(Chance),
     /// Realizations are independent: no block repeats another or follows from the one before; can be refuted, never shown.
@@ -35,9 +36,11 @@ pub enum Claim {
         scene: Option<String>,
         /// Probability of any false alarm among all questions of this claim.
         #[serde(deserialize_with = "input::inside_unit")]
+        #[schemars(schema_with = "schema::inside_unit")]
         alpha: f64,
         /// Largest difference that counts as none, relative to the total.
         #[serde(deserialize_with = "input::inside_unit")]
+        #[schemars(schema_with = "schema::inside_unit")]
         margin: f64,
     },
 }
@@ -90,7 +93,7 @@ impl Claim {
 }
 
 /// Error probability of a claim that can only be refuted.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Chance {
     /// The only scene it is about; all scenes if left out.
@@ -98,6 +101,7 @@ pub struct Chance {
     pub scene: Option<String>,
     /// Probability of any false alarm among all questions of this claim.
     #[serde(deserialize_with = "input::inside_unit")]
+    #[schemars(schema_with = "schema::inside_unit")]
     pub alpha: f64,
 }
 
@@ -109,7 +113,7 @@ impl Limits {
 }
 
 /// Error probability and margin of a claim.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
     /// The only scene it is about; all scenes if left out.
@@ -117,14 +121,16 @@ pub struct Limits {
     pub scene: Option<String>,
     /// Probability of any false alarm among all questions of this claim.
     #[serde(deserialize_with = "input::inside_unit")]
+    #[schemars(schema_with = "schema::inside_unit")]
     pub alpha: f64,
     /// Largest difference that counts as none, relative to the right total.
     #[serde(deserialize_with = "input::inside_unit")]
+    #[schemars(schema_with = "schema::inside_unit")]
     pub margin: f64,
 }
 
 /// A figure for each scene.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Plot {
     /// Quantities over a swept parameter, with theory's curves.
@@ -170,7 +176,7 @@ fn errors() -> Vec<ErrorKind> {
 }
 
 /// A part of the error of a mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorKind {
     /// Mean squared error.
@@ -186,7 +192,7 @@ fn channel() -> String {
 }
 
 /// What a figure can show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Mean less the right value, relative to it.

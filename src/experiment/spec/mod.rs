@@ -18,13 +18,15 @@ pub use walk::{EstimatorSpec, FaultNames, RouletteSpec, TechniqueSpec};
 
 use super::core::Core;
 use super::error::Error;
-use super::input::{self, Named, Tables};
+use super::input::{self, Named, Tables, schema};
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
 /// An experiment file.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Spec {
     /// What the experiment asks.
@@ -41,6 +43,7 @@ pub struct Spec {
     /// So many times each cell is run and judged on its own, with a seed each: not what is right is asked then, but how
     /// often the instruments say so.
     #[serde(default, deserialize_with = "input::optional_count")]
+    #[schemars(schema_with = "schema::optional_count")]
     pub seeds: Option<u32>,
     /// Whether cells share their random numbers.
     #[serde(default)]
@@ -50,12 +53,15 @@ pub struct Spec {
     pub core: Core,
     /// Realizations a cell: paths for a probe, image passes (samples a pixel) for a camera.
     #[serde(deserialize_with = "input::samples")]
+    #[schemars(schema_with = "schema::samples")]
     pub samples: u64,
     /// Where theory gives a cell's variance, it gets as many realizations as its claim needs, up to this many.
     #[serde(default, deserialize_with = "input::optional_samples")]
+    #[schemars(schema_with = "schema::optional_samples")]
     pub max_samples: Option<u64>,
     /// Each cell's samples are cut into so many runs, whose means are looked at as they grow.
     #[serde(default)]
+    #[schemars(schema_with = "schema::runs")]
     pub runs: Option<Spanned<Runs>>,
     /// What is run: every combination within each grid.
     pub grid: Tables<Grid>,
@@ -78,7 +84,7 @@ fn one() -> u64 {
 }
 
 /// Whether cells share their random numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Streams {
     /// Each cell has its own.
@@ -89,20 +95,25 @@ pub enum Streams {
 }
 
 /// Every combination of the listed scenes, estimators and termination rules.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Grid {
     /// Scenes.
+    #[schemars(with = "Vec<Named<SceneSpec>>", length(min = 1))]
     pub scene: Spanned<Vec<Spanned<Named<SceneSpec>>>>,
     /// Estimators.
+    #[schemars(with = "Vec<Named<EstimatorSpec>>", length(min = 1))]
     pub estimator: Spanned<Vec<Spanned<Named<EstimatorSpec>>>>,
     /// Termination rules.
+    #[schemars(with = "Vec<Named<RouletteSpec>>", length(min = 1))]
     pub roulette: Spanned<Vec<Spanned<Named<RouletteSpec>>>>,
     /// Realizations a cell of this grid, instead of the file's.
     #[serde(default, deserialize_with = "input::optional_samples")]
+    #[schemars(schema_with = "schema::optional_samples")]
     pub samples: Option<u64>,
     /// Runs that a cell of this grid is cut into, instead of the file's.
     #[serde(default)]
+    #[schemars(schema_with = "schema::runs")]
     pub runs: Option<Spanned<Runs>>,
 }
 
@@ -118,19 +129,33 @@ impl<'de> Deserialize<'de> for Runs {
 
 /// A stored image of a scene, used where theory has no closed form. It stands before the one that comes with the
 /// program; if this program made it, after that one, and for other kinds of estimators only.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReferenceSpec {
     /// What the scene is called in results.
+    #[schemars(with = "String")]
     pub scene: Spanned<String>,
     /// An EXR file, relative to the experiment file.
+    #[schemars(with = "String")]
     pub file: Spanned<PathBuf>,
     /// Bound on the relative systematic error of tiles, such as that of a renderer in single precision.
     #[serde(default, deserialize_with = "input::relative_error")]
+    #[schemars(schema_with = "schema::relative_error")]
     pub systematic: f64,
     /// Degrees of freedom of standard errors that the file states; that of 32 renderings, if left out.
     #[serde(default, deserialize_with = "input::optional_count")]
+    #[schemars(schema_with = "schema::optional_count")]
     pub degrees_of_freedom: Option<u32>,
+}
+
+/// The JSON schema of experiment files, by which editors complete and check them. What it refuses is refused here too, but
+/// not the other way round: no schema knows which walks end.
+pub fn schema() -> String {
+    // the draft that editors of TOML know
+    let settings = SchemaSettings::draft07().with_transform(schema::for_files);
+    let mut schema = settings.into_generator().into_root_schema_for::<Spec>();
+    schema.insert("title".to_owned(), "An experiment of furnace".into());
+    serde_json::to_string_pretty(&schema).expect("a schema is JSON") + "\n"
 }
 
 /// Reads an experiment file; `source` is its text.

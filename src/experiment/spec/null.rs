@@ -1,28 +1,33 @@
 //! Synthetic samples of known mean, on which an experiment measures how often the instruments err.
 
-use crate::experiment::input::Sweep;
+use crate::experiment::input::{Sweep, schema};
 use crate::stats::nulls::{self, Law, NullRow, Setting};
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, de::Error as _};
 use std::fmt::Display;
 use std::sync::atomic::AtomicBool;
 
 /// One law, whose samples are judged again and again.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NullSpec {
     /// What the samples are like.
     pub law: Law,
     /// Samples a run: 1 to 10^7.
     #[serde(deserialize_with = "samples")]
+    #[schemars(range(min = 1, max = 10_000_000))]
     pub samples: u64,
     /// Runs: 2 to 10^7.
     #[serde(deserialize_with = "runs")]
+    #[schemars(range(min = 2, max = 10_000_000))]
     pub runs: u64,
     /// Nominal error probabilities, inside (0, 1): a number, or a list of numbers.
     #[serde(deserialize_with = "level")]
+    #[schemars(schema_with = "schema::levels")]
     pub level: Vec<f64>,
     /// Samples are multiplied by one more than this, from above -1 to 10: a number, or a list of numbers.
     #[serde(default = "none", deserialize_with = "bias")]
+    #[schemars(schema_with = "schema::biases")]
     pub bias: Vec<f64>,
 }
 

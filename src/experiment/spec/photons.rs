@@ -1,16 +1,18 @@
 //! Estimators that start from the lights, as files write them.
 
 use crate::estimator::{DirectLight, Kernel, Last};
-use crate::experiment::input::{self, Sweep};
+use crate::experiment::input::{self, Sweep, schema};
 use crate::scene::Directions;
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
 /// Particles connected to the sensor.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LightTracingSpec {
     /// Particles of one realization; as many as the sensor has pixels, if left out.
     #[serde(default, deserialize_with = "optional_numbers")]
+    #[schemars(schema_with = "schema::photons")]
     pub particles: Option<Sweep>,
     /// How directions are drawn.
     #[serde(default)]
@@ -18,17 +20,20 @@ pub struct LightTracingSpec {
 }
 
 /// The density of photons.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhotonMapSpec {
     /// Photons that are sent for one map.
     #[serde(default = "ten_thousand", deserialize_with = "numbers")]
+    #[schemars(schema_with = "schema::photons")]
     pub photons: Sweep,
     /// So many of the nearest are gathered.
     #[serde(default, deserialize_with = "optional_nearest")]
+    #[schemars(schema_with = "schema::nearest")]
     pub k: Option<Sweep>,
     /// All within this distance are gathered.
     #[serde(default, deserialize_with = "optional_lengths")]
+    #[schemars(schema_with = "schema::lengths")]
     pub radius: Option<Sweep>,
     /// Whether the k-th counts.
     #[serde(default = "left_out")]
@@ -41,6 +46,7 @@ pub struct PhotonMapSpec {
     pub direct: DirectLight,
     /// Rays by which indirect light is gathered.
     #[serde(default, deserialize_with = "input::bounces")]
+    #[schemars(schema_with = "schema::bounces")]
     pub final_gather: u32,
     /// How directions are drawn.
     #[serde(default)]
@@ -48,20 +54,24 @@ pub struct PhotonMapSpec {
 }
 
 /// A sequence of maps whose radius shrinks.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProgressiveSpec {
     /// Photons that are sent for one map.
     #[serde(default = "ten_thousand", deserialize_with = "numbers")]
+    #[schemars(schema_with = "schema::photons")]
     pub photons: Sweep,
     /// Radius of the first map.
     #[serde(deserialize_with = "lengths")]
+    #[schemars(schema_with = "schema::lengths")]
     pub radius: Sweep,
     /// Share of new photons that are kept.
     #[serde(default = "two_thirds", deserialize_with = "shares")]
+    #[schemars(schema_with = "schema::shares")]
     pub alpha: Sweep,
     /// So many maps make one picture.
     #[serde(deserialize_with = "input::samples")]
+    #[schemars(schema_with = "schema::samples")]
     pub passes: u64,
     /// How photons count by their distance.
     #[serde(default, deserialize_with = "kernel")]

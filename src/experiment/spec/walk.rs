@@ -2,21 +2,24 @@
 
 use super::photons::{LightTracingSpec, PhotonMapSpec, ProgressiveSpec};
 use crate::estimator::Heuristic;
-use crate::experiment::input::{self, Named, Sweep};
+use crate::experiment::input::{self, Named, Sweep, schema};
 use crate::scene::{Directions, Pick, Points};
+use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// An estimator.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum EstimatorSpec {
     /// N samples at each vertex.
     Recursive {
         /// N.
         #[serde(deserialize_with = "input::positive_counts")]
+        #[schemars(schema_with = "schema::positive_counts")]
         samples: Sweep,
         /// The largest number of bounces.
         #[serde(deserialize_with = "input::counts")]
+        #[schemars(schema_with = "schema::counts")]
         depth: Sweep,
         /// How directions are drawn.
         #[serde(default)]
@@ -67,13 +70,13 @@ fn implicit() -> Box<Named<EstimatorSpec>> {
 }
 
 /// Names of faults: one, or a list.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "the name of a fault, or a list of names")]
 pub enum FaultNames {
     /// One.
-    One(String),
+    One(#[schemars(schema_with = "schema::fault")] String),
     /// Several.
-    Several(Vec<String>),
+    Several(#[schemars(schema_with = "schema::faults")] Vec<String>),
 }
 
 impl FaultNames {
@@ -87,7 +90,7 @@ impl FaultNames {
 }
 
 /// Which technique finds direct light.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TechniqueSpec {
     /// Points sampled on the emitters.
@@ -100,7 +103,7 @@ pub enum TechniqueSpec {
 }
 
 /// A termination rule.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RouletteSpec {
     /// Nothing but the estimator's own depth ends a walk.
@@ -109,39 +112,48 @@ pub enum RouletteSpec {
     DepthClamp {
         /// The largest number of bounces.
         #[serde(deserialize_with = "input::counts")]
+        #[schemars(schema_with = "schema::counts")]
         bounces: Sweep,
     },
     /// The same q everywhere.
     Constant {
         /// Expected number of continuations.
         #[serde(deserialize_with = "input::survival")]
+        #[schemars(schema_with = "schema::survival")]
         q: Sweep,
         /// The first so many bounces are certain.
         #[serde(default, deserialize_with = "input::bounces")]
+        #[schemars(schema_with = "schema::bounces")]
         from: u32,
         /// The largest number of bounces.
         #[serde(default, deserialize_with = "input::optional_bounces")]
+        #[schemars(schema_with = "schema::optional_bounces")]
         clamp: Option<u32>,
     },
     /// q = largest channel of the albedo.
     Albedo {
         /// The first so many bounces are certain.
         #[serde(default, deserialize_with = "input::bounces")]
+        #[schemars(schema_with = "schema::bounces")]
         from: u32,
         /// The largest number of bounces.
         #[serde(default, deserialize_with = "input::optional_bounces")]
+        #[schemars(schema_with = "schema::optional_bounces")]
         clamp: Option<u32>,
     },
     /// q = largest channel of the throughput.
     Throughput {
         /// Lower limit of q.
         #[serde(default = "small", deserialize_with = "input::probability")]
+        #[schemars(schema_with = "schema::probability")]
         floor: f64,
         /// The first so many bounces are certain.
         #[serde(default, deserialize_with = "input::bounces")]
+        #[schemars(schema_with = "schema::bounces")]
         from: u32,
         /// The largest number of bounces.
         #[serde(default, deserialize_with = "input::optional_bounces")]
+        #[schemars(schema_with = "schema::optional_bounces")]
         clamp: Option<u32>,
     },
 }

@@ -30,6 +30,21 @@ impl<'a> Studied<'a> {
         Studied { plan, cells, nulls }
     }
 
+    /// What was planned.
+    pub fn plan(&self) -> &'a Plan {
+        self.plan
+    }
+
+    /// The finished cells, by their indices.
+    pub fn cells(&self) -> &[(usize, &'a Detection)] {
+        &self.cells
+    }
+
+    /// What synthetic laws have shown.
+    pub fn nulls(&self) -> &'a [NullRow] {
+        self.nulls
+    }
+
     fn effect(&self, cell: usize) -> Option<Effect> {
         self.plan.cells[cell].fault.map(|fault| fault.effect)
     }

@@ -4,11 +4,12 @@ use super::{Count, Instrument, Rates, Setting, measure_at, predicted};
 use crate::stats::nulls::Law;
 use crate::stats::question::Engine;
 use crate::stats::skewed;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 
 /// A line: one instrument on one law, at one level and bias.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NullRow {
     /// What the law is called.
     pub law: String,

@@ -1,0 +1,60 @@
+//! Examples for the help of each command; all of them work.
+
+pub const RUN: &str = "\
+Examples:
+  experiment rr_sweep
+  experiment rr_sweep --quick
+  experiment rr_sweep --filter \"furnace implicit\" --samples 65536
+  experiment rr_sweep --set seed=7 --set grid.0.samples=65536
+  experiment --all --claims --format json";
+
+pub const LIST: &str = "\
+Examples:
+  experiment list
+  experiment list --format json";
+
+pub const PLAN: &str = "\
+Examples:
+  experiment plan rr_sweep
+  experiment plan rr_sweep --margin 0.001";
+
+pub const REPORT: &str = "\
+Examples:
+  experiment report rr_sweep";
+
+pub const NEW: &str = "\
+Examples:
+  experiment new my_question
+  experiment new my_question --scene furnace cornell_box";
+
+pub const RENDER: &str = "\
+Examples:
+  experiment render cornell_box
+  experiment render cornell_box --estimator explicit --spp 64 -o out.exr";
+
+pub const REFERENCE: &str = "\
+Examples:
+  experiment reference cornell_box --until-error 0.01
+  experiment reference experiments/caustics.toml:caustic_glass --estimator light_tracing -o glass.exr";
+
+pub const EXPORT: &str = "\
+Examples:
+  experiment export furnace
+  experiment export cornell_box --format mitsuba -o box.xml";
+
+pub const SCHEMA: &str = "\
+Examples:
+  experiment schema
+  experiment schema result";
+
+pub const COMPLETIONS: &str = "\
+Examples:
+  experiment completions bash
+  experiment completions fish
+
+The script calls the program that printed it. To load it when a shell starts:
+  bash        source <(experiment completions bash)                     in ~/.bashrc
+  zsh         source <(experiment completions zsh)                      in ~/.zshrc
+  fish        experiment completions fish | source                      in ~/.config/fish/config.fish
+  elvish      eval (experiment completions elvish | slurp)              in ~/.elvish/rc.elv
+  powershell  experiment completions powershell | Out-String | Invoke-Expression  in $PROFILE";

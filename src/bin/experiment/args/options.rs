@@ -1,0 +1,77 @@
+//! What can be said of every command.
+
+use crate::baseline::Names;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ColorChoice, ValueEnum};
+use furnace::experiment::Core;
+use std::path::PathBuf;
+
+#[derive(Args, Clone, Default)]
+pub struct Options {
+    #[command(flatten)]
+    pub baselines: Names,
+    /// Write to DIR/NAME instead of reports/NAME
+    #[arg(long, value_name = "DIR", global = true)]
+    pub out: Option<PathBuf>,
+    /// Another seed than the file's
+    #[arg(long, value_name = "N", global = true)]
+    pub seed: Option<u64>,
+    /// Threads; 0 = one for each core. Results do not depend on it
+    #[arg(short, long, value_name = "N", default_value_t = 0, global = true,
+        value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub jobs: u16,
+    /// What follows paths: the textbook, one path at a time in double precision, or, where it is offered, the fast path,
+    /// sixteen at once in single precision; instead of what the file says
+    #[arg(long, value_parser = core(), global = true)]
+    pub core: Option<Core>,
+    /// A hundredth of the samples: shows that all works, decides little
+    #[arg(long, global = true)]
+    pub quick: bool,
+    /// Realizations of every cell
+    #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000_000_000))]
+    pub samples: Option<u64>,
+    /// Every experiment there is
+    #[arg(long)]
+    pub all: bool,
+    /// Judge the claims and write nothing: what a nightly run wants. Takes a fresh seed, and prints it, unless --seed is given
+    #[arg(long, conflicts_with_all = ["baseline", "save_baseline"])]
+    pub claims: bool,
+    /// Only cells whose label contains TEXT
+    #[arg(long, value_name = "TEXT", global = true)]
+    pub filter: Option<String>,
+    /// Only the cell with this label, with the samples that it has in the whole experiment; fewer questions then share the
+    /// error probabilities, so that verdicts can be sharper
+    #[arg(long, value_name = "LABEL", global = true, allow_hyphen_values = true, conflicts_with = "filter")]
+    pub only: Option<String>,
+    /// Change a value of the file: --set seed=7, --set grid.0.samples=100
+    #[arg(long, value_name = "PATH=VALUE", global = true)]
+    pub set: Vec<String>,
+    /// What goes to standard output
+    #[arg(long, value_enum, default_value_t = Format::Text, global = true)]
+    pub format: Format,
+    /// Colours: of what goes to a terminal, unless NO_COLOR says otherwise; or in any case, or never
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t, global = true)]
+    pub color: ColorChoice,
+    /// No progress, only results
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+    /// Run cells that are out of proportion
+    #[arg(long, global = true)]
+    pub force: bool,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A table
+    #[default]
+    Text,
+    /// A JSON object an experiment, on one line
+    Json,
+    /// A scene file for Mitsuba 3, which is what `export` writes
+    Mitsuba,
+}
+
+/// The names of cores, and nothing else.
+fn core() -> impl TypedValueParser<Value = Core> {
+    PossibleValuesParser::new(Core::ALL.map(Core::name)).try_map(|name| name.parse())
+}
