@@ -13,6 +13,7 @@ mod reference;
 mod render;
 mod run;
 mod schema;
+mod set;
 mod study;
 mod subject;
 
@@ -56,6 +57,11 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
     let exports = matches!(cli.command, Some(Command::Export(_)));
     if cli.options.format == Format::Mitsuba && !exports {
         return Err(Error::Refused("only `export` writes --format mitsuba".to_owned()));
+    }
+    let has_objects =
+        matches!(cli.command, None | Some(Command::List | Command::Plan { .. } | Command::Report { .. }));
+    if cli.options.format == Format::Json && !has_objects && !exports {
+        return Err(Error::Refused("--format json is for runs, `list`, `plan` and `report`".to_owned()));
     }
     match &cli.command {
         None => run::all(&cli.names, &cli.options, stop),

@@ -111,8 +111,13 @@ pub fn sample(
             run_cell(cell_plan, stop, &|rays| progress.rays(rays), &is_decided)
         });
         seconds.push(start.elapsed().as_secs_f64());
-        if cell.is_some() {
-            progress.done(&label, i + 1, plan, seconds[i]);
+        if let Some(cell) = cell.as_ref().filter(|_| !progress.is_silent()) {
+            let verdict = verdict::so_far(plan, i, cell);
+            let shown = verdict.map_or_else(
+                || "not judged so far".to_owned(),
+                |verdict| format!("{} so far", terminal::verdict(verdict)),
+            );
+            progress.done(&label, i + 1, plan, seconds[i], &shown);
         }
         cells.push(cell);
     }
