@@ -92,9 +92,12 @@ fn names_that_nothing_has() {
     refuses(&place(&[]), "anything", &["there are none in the folder experiments/"]);
 }
 
+const COMMANDS: [&str; 10] =
+    ["list", "plan", "report", "new", "render", "reference", "export", "schema", "completions", "help"];
+
 #[test]
 fn an_experiment_named_like_a_command() {
-    for name in ["list", "plan", "report", "render", "reference", "export", "help"] {
+    for name in COMMANDS {
         let place = place(&[(name, GOOD)]);
         let words = format!("experiments/{name}.toml: `{name}` is a command; rename the file");
         refuses(&place, &format!("experiments/{name}.toml"), &[&words]);
@@ -106,17 +109,21 @@ fn an_experiment_named_like_a_command() {
 fn changes_that_cannot_be() {
     let place = place(&[("x", GOOD)]);
     let cases: [(&str, &[&str]); 8] = [
-        ("x --set seed", &["--set seed: expected path=value"]),
-        ("x --set grid.scene.5=1", &["--set grid.scene.5=1: there is no element 5"]),
-        ("x --set samples.a=1", &["--set samples.a=1: `a` is not inside a table or list"]),
+        ("x --set seed", &["expected path=value", "--> --set:1:1\n  |\n1 | seed\n  | ^^^^\n"]),
+        (
+            "x --set grid.scene.5=1",
+            &["there is no element 5; the list has 1", "1 | grid.scene.5=1\n  |            ^\n"],
+        ),
+        ("x --set samples.a=1", &["`a` is not inside a table or list", "1 | samples.a=1\n  |         ^\n"]),
         ("x --set grid.scene.x=1", &["`x` is not inside a table or list"]),
-        ("x --set sed=1", &["unknown field `sed`", "did you mean `seed`?"]),
-        ("x --set samples=0", &["at least 1 sample is needed"]),
-        ("x --set samples=lots", &["invalid type: string \"lots\""]),
+        ("x --set sed=1", &["unknown field `sed`", "did you mean `seed`?", "1 | sed=1\n  | ^^^\n"]),
+        ("x --set samples=0", &["at least 1 sample is needed", "1 | samples=0\n  |         ^\n"]),
+        ("x --set samples=lots", &["invalid type: string \"lots\"", "1 | samples=lots\n  |         ^^^^\n"]),
         ("x --set grid.roulette=[]", &["an empty list of termination rules leaves nothing to run"]),
     ];
     cases.iter().for_each(|(args, words)| refuses(&place, args, words));
-    refuses(&place, "x --filter nowhere", &["no cell of x has `nowhere` in its label"]);
+    let there = "no cell of x has `nowhere` in its label; there are:\n  furnace implicit albedo\n";
+    refuses(&place, "x --filter nowhere", &[there]);
 }
 
 #[test]

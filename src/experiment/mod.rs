@@ -1,5 +1,6 @@
 //! From an experiment file to verdicts: spec, plan, blocks, cells, rows.
 
+mod about;
 mod agree;
 pub mod allot;
 pub mod baseline;

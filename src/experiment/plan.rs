@@ -1,11 +1,12 @@
 //! The resolved experiment: every cell with its samples and what it will cost.
 
+use super::about;
 use super::core::Core;
 use super::error::Error;
 use super::grid;
 use super::ledger::Stream;
 use super::references::{self, NamedReference};
-use super::spec::{self, Claim, Plot, Spec};
+use super::spec::{self, Spec};
 use super::stakes;
 use crate::estimator::{Estimate, Estimator, MAX_RAYS, Property};
 use crate::faults::{Fault, Faulty};
@@ -145,13 +146,15 @@ impl Plan {
         let references = references::load(&spec, &cells, file, source)?;
         let mut plan = Plan { name: name.to_owned(), spec, cells, left_out, swept, references, whole: None };
         plan.distinct()?;
-        plan.about_something()?;
+        about::something(&plan, file, source)?;
         if let Some(text) = &overrides.filter {
+            let labels = plan.labels();
+            if !labels.iter().any(|label| label.contains(text.as_str())) {
+                let why = format!("no cell of {name} has `{text}` in its label");
+                return Err(Error::Refused(format!("{why}; there are:{}", listed(&labels, text))));
+            }
             let swept = &plan.swept;
             plan.cells.retain(|cell| label(cell, swept).contains(text.as_str()));
-            if plan.cells.is_empty() {
-                return Err(Error::Refused(format!("no cell of {name} has `{text}` in its label")));
-            }
         }
         stakes::lay(&mut plan);
         plan.allot(overrides);
@@ -165,6 +168,10 @@ impl Plan {
     /// What the terminal and the page call a cell.
     pub fn label(&self, cell: &CellPlan) -> String {
         label(cell, &self.swept)
+    }
+
+    fn labels(&self) -> Vec<String> {
+        self.cells.iter().map(|cell| self.label(cell)).collect()
     }
 
     /// A cell's termination rule and swept parameters.
@@ -188,13 +195,10 @@ impl Plan {
     /// Forgets all cells but one, but not how many questions were to share the error probabilities: when a cell may end
     /// depends on that.
     fn keep_only(&mut self, wanted: &str) -> Result<(), Error> {
-        let labels: Vec<String> = self.cells.iter().map(|cell| self.label(cell)).collect();
+        let labels = self.labels();
         if !labels.iter().any(|label| label == wanted) {
-            let there = labels.iter().map(|label| format!("\n  {label}")).collect::<String>();
-            return Err(Error::Refused(format!(
-                "no cell of {} is called `{wanted}`; there are:{there}",
-                self.name
-            )));
+            let why = format!("no cell of {} is called `{wanted}`", self.name);
+            return Err(Error::Refused(format!("{why}; there are:{}", listed(&labels, wanted))));
         }
         // studies judge each cell as if it were the whole experiment
         if self.spec.seeds.is_none() {
@@ -220,63 +224,6 @@ impl Plan {
         Ok(())
     }
 
-    /// A claim or a plot of what is not there would hold for ever.
-    fn about_something(&self) -> Result<(), Error> {
-        let scene = |name: &String| self.cells.iter().any(|cell| cell.scene_label == *name);
-        let no_scene = |what: &str, name: &String| {
-            let mut known: Vec<&str> = self.cells.iter().map(|cell| cell.scene_label.as_str()).collect();
-            known.dedup();
-            let known = known.join(", ");
-            Err(Error::Refused(format!("{}: {what} names the scene `{name}`; there are: {known}", self.name)))
-        };
-        for claim in &self.spec.claim {
-            if let Some(name) = claim.scene().filter(|name| !scene(name)) {
-                return no_scene("a claim", name);
-            }
-            if let Claim::Agree { estimator, roulette, .. } = claim
-                && !self
-                    .cells
-                    .iter()
-                    .any(|c| c.estimator_label == *estimator && c.roulette_label == *roulette)
-            {
-                let wanted = format!("`{estimator}` with `{roulette}`");
-                let known =
-                    self.cells.iter().map(|c| format!("`{}` with `{}`", c.estimator_label, c.roulette_label));
-                let known: std::collections::BTreeSet<String> = known.collect();
-                let known = known.into_iter().collect::<Vec<_>>().join(", ");
-                return Err(Error::Refused(format!(
-                    "{}: agree names {wanted}; there are: {known}",
-                    self.name
-                )));
-            }
-        }
-        for plot in &self.spec.plot {
-            match plot {
-                Plot::Bars { scene: name }
-                | Plot::Convergence { scene: name, .. }
-                | Plot::Shares { scene: name, .. }
-                    if !scene(name) =>
-                {
-                    return no_scene("a plot", name);
-                }
-                Plot::Shares { scene: name, of }
-                    if !self.cells.iter().any(|c| c.scene_label == *name && c.estimator_label == *of) =>
-                {
-                    let why = format!("a plot takes shares of `{of}`, which is not run in {name}");
-                    return Err(Error::Refused(format!("{}: {why}", self.name)));
-                }
-                Plot::Over { parameter, .. } if !self.swept.contains(parameter) => {
-                    let known = self.swept.join(", ");
-                    let why =
-                        format!("a plot goes over `{parameter}`, which is not swept; swept are: {known}");
-                    return Err(Error::Refused(format!("{}: {why}", self.name)));
-                }
-                _ => {}
-            }
-        }
-        Ok(())
-    }
-
     fn proportionate(&self, cell: &CellPlan, force: bool) -> Result<(), Error> {
         let label = self.label(cell);
         let one = cell.rays / cell.pixels as f64;
@@ -296,6 +243,19 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+/// A line for each label, those first that are most like what was written; of many the rest is only counted.
+fn listed(labels: &[String], written: &str) -> String {
+    const SHOWN: usize = 12;
+    let mut labels: Vec<&String> = labels.iter().collect();
+    if labels.len() > SHOWN {
+        labels.sort_by_key(|label| strsim::damerau_levenshtein(label, written));
+    }
+    let shown = labels.iter().take(SHOWN).map(|label| format!("\n  {label}"));
+    let more = labels.len().saturating_sub(SHOWN);
+    let more = (more > 0).then(|| format!("\n  and {more} more, which `plan` lists"));
+    shown.chain(more).collect()
 }
 
 fn label(cell: &CellPlan, swept: &[String]) -> String {

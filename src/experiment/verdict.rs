@@ -93,6 +93,33 @@ pub fn is_decided(plan: &Plan, index: usize, cell: &mut Cell) -> bool {
     all
 }
 
+/// The worst that is concluded of a finished cell by itself, while others are still running; `None` if its mean was not
+/// judged. Each question has the level that it has at least in the end, so that PASS and FAIL will stay what they are, but
+/// for comparisons with other cells, which are still to come.
+pub fn so_far(plan: &Plan, index: usize, cell: &Cell) -> Option<Verdict> {
+    let mut found = Found::default();
+    of_cell(plan, index, cell, &mut found);
+    let Found { rows, asked, suspicions } = found;
+    let one = |Asked { claim, row, question, foreseen }: &Asked| {
+        let (row, level) = (&rows[*row], level(plan, *claim));
+        let same = |d: &&Decided| (d.estimand, d.channel) == (row.estimand, row.channel);
+        let verdict = match (decide(question, level), cell.decided.iter().find(same)) {
+            (Verdict::Inconclusive, Some(decided)) => decided.verdict,
+            (Verdict::Pass, _) if inexact(question, level).is_some() => Verdict::Inconclusive,
+            (verdict, _) => verdict,
+        };
+        let in_vain = verdict == Verdict::Inconclusive && foreseen.is_some();
+        (!in_vain).then_some((row.estimand, verdict))
+    };
+    let refuted =
+        |s: &Suspicion| (s.p <= level(plan, s.claim)).then_some((rows[s.row].estimand, Verdict::Fail));
+    let found = asked.iter().filter_map(one).chain(suspicions.iter().filter_map(refuted));
+    let found: Vec<(Estimand, Verdict)> = found.collect();
+    let worst = found.iter().map(|(_, verdict)| *verdict).max()?;
+    let judged = found.iter().any(|(estimand, _)| *estimand == Estimand::Mean);
+    Some(worst).filter(|&worst| judged || worst != Verdict::Pass)
+}
+
 /// Asks each claim's questions as one family.
 fn answer(plan: &Plan, cells: &[Option<Cell>], rows: &mut [Row], asked: Vec<Asked>) {
     for (index, claim) in plan.spec.claim.iter().enumerate() {

@@ -1,6 +1,9 @@
 //! What each cell's error costs: its relative mean squared error after any number of samples, and the rays of a sample.
 
 use super::lookup::Lookup;
+use super::metrics::Metrics;
+use super::pictures::Picture;
+use super::table::number;
 use crate::experiment::{Estimand, Row};
 
 /// The price of a cell.
@@ -13,6 +16,8 @@ pub struct Cost {
     pub rays: f64,
     /// Red, green and blue; `None` for a channel without light.
     pub channels: [Option<Error>; 3],
+    /// How far its picture, as it is, is from the reference; `None` without one of the same size.
+    pub picture: Option<Metrics>,
 }
 
 /// The error in one channel: relative to the truth, its mean square after n samples is `noise / n + floor`.
@@ -27,17 +32,18 @@ pub struct Error {
 }
 
 /// The costs of all finished cells without a known mistake.
-pub fn of(lookup: &Lookup<'_>) -> Vec<Cost> {
+pub fn of(lookup: &Lookup<'_>, pictures: &[Picture]) -> Vec<Cost> {
     let finished = (0..lookup.plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty());
-    finished.filter(|&c| !lookup.is_faulty(c)).filter_map(|c| cost(lookup, c)).collect()
+    finished.filter(|&c| !lookup.is_faulty(c)).filter_map(|c| cost(lookup, c, pictures)).collect()
 }
 
-fn cost(lookup: &Lookup<'_>, cell: usize) -> Option<Cost> {
+fn cost(lookup: &Lookup<'_>, cell: usize, pictures: &[Picture]) -> Option<Cost> {
     Some(Cost {
         cell,
         samples: lookup.row(cell, Estimand::Mean, Some(0))?.samples,
         rays: lookup.row(cell, Estimand::Cost, None)?.mean,
         channels: [0, 1, 2].map(|channel| error(lookup, cell, channel)),
+        picture: pictures.iter().find(|picture| picture.cell == cell).and_then(|picture| picture.metrics),
     })
 }
 
@@ -63,4 +69,25 @@ fn remaining(row: &Row) -> f64 {
         (bias * bias - error * error).max(0.0)
     };
     row.expected_bias.map_or_else(measured, |bias| bias * bias)
+}
+
+/// The text of `pictures.csv`: how far each picture is from its reference; nothing where none is compared.
+pub fn csv(lookup: &Lookup<'_>, costs: &[Cost]) -> Option<Vec<u8>> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    csv.write_record(["experiment", "cell", "samples", "rel_mse", "rel_mse_error", "flip"])
+        .expect("a Vec takes all");
+    let mut is_empty = true;
+    for (cost, metrics) in costs.iter().filter_map(|cost| Some((cost, cost.picture.as_ref()?))) {
+        is_empty = false;
+        let record = [
+            lookup.plan.name.clone(),
+            lookup.plan.label(&lookup.plan.cells[cost.cell]),
+            cost.samples.to_string(),
+            number(Some(metrics.rel_mse)),
+            number(metrics.rel_mse_error),
+            number(Some(metrics.flip)),
+        ];
+        csv.write_record(record).expect("a Vec takes all");
+    }
+    (!is_empty).then(|| csv.into_inner().expect("a Vec takes all"))
 }

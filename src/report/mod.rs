@@ -78,7 +78,10 @@ pub fn write(
     let answer = answer::sentences(&lookup);
     let figure = drawn.first().map(|drawn| format!("{}.svg", drawn.name));
     store.write(overview::FILE, summary(&lookup, &answer, figure).text().as_bytes())?;
-    let costs = costs::of(&lookup);
+    let costs = costs::of(&lookup, &pictures);
+    if let Some(csv) = costs::csv(&lookup, &costs) {
+        store.write("pictures.csv", &csv)?;
+    }
     let content = Content {
         lookup: &lookup,
         cells,

@@ -1,10 +1,13 @@
 //! The images of a run: EXR files with everything in them, PNG files to look at, and what the page shows of the former.
 
+use super::metrics::{self, Image, Metrics};
 use super::raster::Raster;
 use super::{difference, figure, images, plots};
 use crate::experiment::store::Store;
 use crate::experiment::{Cell, Error, Plan};
+use crate::scene::Rgb;
 use crate::truth::{Reference, Truth};
+use rayon::prelude::*;
 use std::io;
 use std::path::Path;
 
@@ -18,8 +21,24 @@ pub struct Picture {
     pub raster: Raster,
     /// The stored image against which it is shown, if there is one.
     pub reference: Option<Raster>,
+    /// How far it is from the reference, where that has as many pixels and all of both are numbers.
+    pub metrics: Option<Metrics>,
     /// Whether a map of its difference from the reference lies beside it.
     pub has_map: bool,
+}
+
+impl Picture {
+    fn measure(&mut self) {
+        let Some(reference) = &self.reference else { return };
+        let ([ours, error], [right, noise]) = (self.raster.rgb(), reference.rgb());
+        let is_finite = |pixels: &[Rgb]| pixels.iter().all(|pixel| pixel.is_finite());
+        if ours.len() != right.len() || ![&ours, &error, &right, &noise].iter().all(|p| is_finite(p)) {
+            return;
+        }
+        let (width, height) = (self.raster.width, self.raster.height);
+        let image = Image { width, height, pixels: &ours, std_error: Some(&error) };
+        self.metrics = Some(metrics::of(image, Image { pixels: &right, std_error: Some(&noise), ..image }));
+    }
 }
 
 /// What follows an image's name in the name of its difference map.
@@ -50,8 +69,9 @@ pub fn write(
         })?;
         let reference = truth.reference().and_then(|reference| Raster::of_reference(reference, size));
         let has_map = mapped(plan, i, &truth).is_some();
-        pictures.push(Picture { cell: i, name, raster, reference, has_map });
+        pictures.push(Picture { cell: i, name, raster, reference, metrics: None, has_map });
     }
+    pictures.par_iter_mut().for_each(Picture::measure);
     match folder {
         Some(folder) => copy_previews(&pictures, store, folder)?,
         None => draw_previews(plan, cells, &pictures, store)?,

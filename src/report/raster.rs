@@ -1,6 +1,7 @@
 //! An image as its EXR file has it, and the bytes in which the page carries it.
 
 use super::{difference, images};
+use crate::scene::Rgb;
 use crate::truth::layers::{Layers, rgb_names};
 use crate::truth::{BadReference, Reference};
 
@@ -57,6 +58,14 @@ impl Raster {
     pub fn exposure(&self) -> f64 {
         let [r, g, b] = &self.mean;
         images::exposure(r.iter().zip(g).zip(b).map(|((&r, &g), &b)| f64::from(r.max(g).max(b))))
+    }
+
+    /// Means and standard errors, pixel by pixel.
+    pub fn rgb(&self) -> [Vec<Rgb>; 2] {
+        [&self.mean, &self.std_error].map(|[r, g, b]| {
+            let pixel = |((&r, &g), &b): ((&f32, &f32), &f32)| Rgb::new(r.into(), g.into(), b.into());
+            r.iter().zip(g).zip(b).map(pixel).collect()
+        })
     }
 
     /// The bytes that `viewer_data.js` reads, laid out to be compressed.

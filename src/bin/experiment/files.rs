@@ -1,6 +1,7 @@
 //! Finding and reading experiment files.
 
 use crate::args::{Options, is_command};
+use crate::set;
 use furnace::experiment::{Error, Overrides, Plan};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ pub struct Source {
     pub text: String,
     /// The text before the changes of `--set`.
     unchanged: String,
+    changes: Vec<String>,
     /// The folder that holds `experiments/`, or the present one.
     root: PathBuf,
 }
@@ -37,8 +39,8 @@ impl Source {
             )));
         }
         let unchanged = text.clone();
-        let text = options.set.iter().try_fold(text, |text, change| set(&file, &text, change))?;
-        Ok(Source { name, file, text, unchanged, root: root() })
+        let text = set::all(&file, text, &options.set)?;
+        Ok(Source { name, file, text, unchanged, changes: options.set.clone(), root: root() })
     }
 
     /// The resolved experiment.
@@ -55,10 +57,10 @@ impl Source {
         if self.text == self.unchanged {
             return Plan::new(&self.name, &self.file, &self.text, &overrides);
         }
-        // a mistake of the file is told by the file's own lines
-        let changed = self.file.with_extension("toml with --set");
-        Plan::new(&self.name, &changed, &self.text, &overrides).map_err(|error| {
-            Plan::new(&self.name, &self.file, &self.unchanged, &overrides).err().unwrap_or(error)
+        Plan::new(&self.name, &self.file, &self.text, &overrides).map_err(|error| {
+            let of_file = Plan::new(&self.name, &self.file, &self.unchanged, &overrides).err();
+            // a mistake of the file is told by the file's own lines
+            of_file.unwrap_or_else(|| set::blame(error, &self.changes))
         })
     }
 
@@ -102,28 +104,4 @@ pub fn question(name: &str) -> Option<String> {
     let text = fs::read_to_string(folder()?.join(format!("{name}.toml"))).ok()?;
     let table: toml::Table = toml::from_str(&text).ok()?;
     table.get("question")?.as_str().map(str::to_owned)
-}
-
-/// Applies `path.to.key=value` to the text of a file; the value is TOML, or else a string.
-fn set(file: &Path, text: &str, change: &str) -> Result<String, Error> {
-    let refuse = |why: &str| Error::Refused(format!("--set {change}: {why}"));
-    let (path, value) = change.split_once('=').ok_or_else(|| refuse("expected path=value"))?;
-    let mut table: toml::Value = toml::from_str(text).map_err(|e| Error::toml(file, text, &e))?;
-    let parsed = toml::from_str::<toml::Table>(&format!("value = {value}"));
-    let value = parsed.ok().and_then(|mut t| t.remove("value"));
-    let value = value.unwrap_or_else(|| toml::Value::String(change[path.len() + 1..].to_owned()));
-    let mut place = &mut table;
-    for key in path.split('.') {
-        place = match (place, key.parse::<usize>()) {
-            (toml::Value::Array(items), Ok(i)) => {
-                items.get_mut(i).ok_or_else(|| refuse(&format!("there is no element {key}")))?
-            }
-            (toml::Value::Table(t), _) => {
-                t.entry(key).or_insert_with(|| toml::Value::Table(toml::Table::new()))
-            }
-            _ => return Err(refuse(&format!("`{key}` is not inside a table or list"))),
-        };
-    }
-    *place = value;
-    toml::to_string(&table).map_err(|e| refuse(&e.to_string()))
 }

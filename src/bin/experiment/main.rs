@@ -16,6 +16,7 @@ mod reference;
 mod render;
 mod run;
 mod schema;
+mod set;
 mod study;
 mod subject;
 
@@ -59,6 +60,11 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
     let exports = matches!(cli.command, Some(Command::Export(_)));
     if cli.options.format == Format::Mitsuba && !exports {
         return Err(Error::Refused("only `export` writes --format mitsuba".to_owned()));
+    }
+    let has_objects =
+        matches!(cli.command, None | Some(Command::List | Command::Plan { .. } | Command::Report { .. }));
+    if cli.options.format == Format::Json && !has_objects && !exports {
+        return Err(Error::Refused("--format json is for runs, `list`, `plan` and `report`".to_owned()));
     }
     match &cli.command {
         None => run::all(&cli.names, &cli.options, stop),

@@ -1,14 +1,18 @@
-//! How far a run has come: a bar on a terminal, a line a cell elsewhere. All of it on standard error.
+//! How far a run has come, on standard error: on a terminal a bar, above which the finished cells stand with their
+//! verdicts; a line a cell elsewhere.
 
-use anstream::eprintln;
+use anstream::{AutoStream, ColorChoice, adapter::strip_str, eprintln};
 use furnace::experiment::Plan;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use std::fmt;
 use std::io::{IsTerminal, stderr};
 
 /// Progress in rays, which are what time is spent on.
 pub struct Progress {
     bar: ProgressBar,
     lines: bool,
+    /// Characters of the longest label.
+    width: usize,
 }
 
 impl Progress {
@@ -17,11 +21,20 @@ impl Progress {
         let terminal = stderr().is_terminal();
         let rays: f64 = plan.cells.iter().map(|cell| cell.total_rays()).sum();
         let bar = if quiet || !terminal { ProgressBar::hidden() } else { ProgressBar::new(rays as u64) };
-        let style = "{wide_bar} {percent:>3} %  {per_sec} rays  {eta} left  {msg}";
+        let style = "{wide_bar} {percent:>3} %  {rate} million rays/s  {eta} left  {msg}";
         if let Ok(style) = ProgressStyle::with_template(style) {
-            bar.set_style(style);
+            let rate = |state: &ProgressState, out: &mut dyn fmt::Write| {
+                let _ = write!(out, "{:.1}", state.per_sec() / 1e6);
+            };
+            bar.set_style(style.with_key("rate", rate));
         }
-        Progress { bar, lines: !quiet && !terminal }
+        let width = plan.cells.iter().map(|cell| plan.label(cell).chars().count()).max().unwrap_or(0);
+        Progress { bar, lines: !quiet && !terminal, width }
+    }
+
+    /// Whether nobody looks.
+    pub fn is_silent(&self) -> bool {
+        self.bar.is_hidden() && !self.lines
     }
 
     /// A cell begins.
@@ -34,13 +47,17 @@ impl Progress {
         self.bar.inc(rays as u64);
     }
 
-    /// A cell is done; the bar moves to where the plan had put its end.
-    pub fn done(&self, label: &str, number: usize, plan: &Plan, seconds: f64) {
+    /// A cell is done, and this is what it has shown; the bar moves to where the plan had put its end.
+    pub fn done(&self, label: &str, number: usize, plan: &Plan, seconds: f64, shown: &str) {
         let planned: f64 = plan.cells[..number].iter().map(|cell| cell.total_rays()).sum();
         self.bar.set_position(planned as u64);
         if self.lines {
-            eprintln!("[{number}/{}] {label}: {seconds:.2} s", plan.cells.len());
+            eprintln!("[{number}/{}] {label}: {seconds:.2} s, {shown}", plan.cells.len());
+            return;
         }
+        let line = format!("{label:<width$}  {seconds:>7.2} s  {shown}", width = self.width);
+        let plain = AutoStream::choice(&stderr()) == ColorChoice::Never;
+        self.bar.println(if plain { strip_str(&line).to_string() } else { line });
     }
 
     /// Removes the bar.

@@ -77,7 +77,7 @@ fn one(
     run.seconds.clone_from(&seconds);
     let rows = verdict::rows(plan, &cells);
     let comparison = wanted.compare(plan, &cells, &rows);
-    report::write(plan, &cells, &rows, &run, &store, None, comparison.as_ref())?;
+    pool(options)?.install(|| report::write(plan, &cells, &rows, &run, &store, None, comparison.as_ref()))?;
     let interrupted = cells.iter().any(Option::is_none);
     let finished = cells.iter().filter(|cell| cell.is_some()).count();
     let stored = Stored {
@@ -126,8 +126,13 @@ pub fn sample(
             run_cell(cell_plan, stop, &|rays| progress.rays(rays), &is_decided)
         });
         seconds.push(start.elapsed().as_secs_f64());
-        if cell.is_some() {
-            progress.done(&label, i + 1, plan, seconds[i]);
+        if let Some(cell) = cell.as_ref().filter(|_| !progress.is_silent()) {
+            let verdict = verdict::so_far(plan, i, cell);
+            let shown = verdict.map_or_else(
+                || "not judged so far".to_owned(),
+                |verdict| format!("{} so far", terminal::verdict(verdict)),
+            );
+            progress.done(&label, i + 1, plan, seconds[i], &shown);
         }
         cells.push(cell);
     }
@@ -190,7 +195,9 @@ pub fn reports(names: &[String], options: &Options) -> Result<u8, Error> {
         let store = Store::open(&folder)?;
         let run = Run::read(&folder)?;
         let comparison = wanted.compare(&plan, &stored.cells, &rows);
-        report::write(&plan, &stored.cells, &rows, &run, &store, Some(&folder), comparison.as_ref())?;
+        let write =
+            || report::write(&plan, &stored.cells, &rows, &run, &store, Some(&folder), comparison.as_ref());
+        pool(options)?.install(write)?;
         store.write_cells(&stored)?;
         let folder = store.publish(None)?;
         overview::write(&source.reports(options))?;

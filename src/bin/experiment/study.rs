@@ -7,7 +7,7 @@ use crate::run::pool;
 use crate::{HELD, INTERRUPTED, NOT_HELD, provenance};
 use anstream::println;
 use furnace::experiment::store::Store;
-use furnace::experiment::study::{Detection, detect};
+use furnace::experiment::study::{Detection, Instrument, detect};
 use furnace::experiment::{Error, Plan};
 use furnace::report::json::{Content, Object, Study};
 use furnace::report::overview::{self, Summary};
@@ -80,8 +80,8 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Outcome,
         let detection = pool.install(|| detect(plan, i, stop, &|rays| progress.rays(rays)));
         let seconds = start.elapsed().as_secs_f64();
         taken.push(seconds);
-        if detection.is_some() {
-            progress.done(&label, i + 1, plan, seconds);
+        if let Some(detection) = &detection {
+            progress.done(&label, i + 1, plan, seconds, &shown(detection));
             timing.push_str(&format!("{i},{seconds:.4}\n"));
         }
         detections.push(detection);
@@ -98,6 +98,13 @@ fn sample(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<(Outcome,
     let whole = detections.iter().all(Option::is_some) && nulls.iter().all(Option::is_some);
     let nulls = nulls.into_iter().flatten().flatten().collect();
     Ok((Outcome { detections, nulls, whole }, timing, taken))
+}
+
+/// In how many runs the bench found something.
+fn shown(detection: &Detection) -> String {
+    let found = Instrument::ALL.iter().zip(&detection.found).find(|(i, _)| **i == Instrument::Verdict);
+    let found = found.and_then(|(_, found)| *found).unwrap_or(0);
+    format!("something found in {found} of {} runs", detection.seeds)
 }
 
 /// Rebuilds the report of a stored study.

@@ -17,6 +17,14 @@ pub fn section(lookup: &Lookup<'_>, costs: &[Cost]) -> Markup {
                     "times more of the budget the baseline needs. Its interval has 99.9 % and knows the errors of both "
                     "variances and nothing of bias; seconds are those of one run, whose own scatter it does not know."
                 }
+                @if costs.iter().any(|cost| cost.picture.is_some()) {
+                    p {
+                        "relMSE of a picture, as it is: squared error over squared reference, plus 0.01 W² m⁻⁴ sr⁻², averaged "
+                        "over pixels and channels, less what the reference's own noise adds (Rousselle, Knaus and Zwicker 2011). "
+                        "FLIP: how different the two look when they are flipped, from 0 to 1 (HDR-FLIP, Andersson et al. 2021). "
+                        a href="pictures.csv" { "pictures.csv" } " has both."
+                    }
+                }
                 noscript { p { "This table needs JavaScript; " a href="results.csv" { "results.csv" } " has its numbers." } }
             }
         }
@@ -36,6 +44,9 @@ pub fn json(lookup: &Lookup<'_>, costs: &[Cost]) -> Value {
             "channels": cost.channels.iter().map(|channel| channel.as_ref().map(|error| json!({
                 "noise": error.noise, "error": error.noise_error, "floor": error.floor,
             }))).collect::<Vec<_>>(),
+            "measured": cost.picture.map(|metrics| json!({
+                "rel_mse": metrics.rel_mse, "error": metrics.rel_mse_error, "flip": metrics.flip,
+            })),
         })
     };
     let scene = |(name, costs): (&str, Vec<&Cost>)| json!({ "scene": name, "cells": costs.into_iter().map(one).collect::<Vec<_>>() });

@@ -48,7 +48,7 @@ function costTable(cells, base) {
       element("td", { class: "n" }, speedUp(after(base, budget) / after(cell, budget), cell, base)),
     ]),
     element("td", { class: "n" }, cell.floor ? `${told(100 * Math.sqrt(cell.floor), 3)} %` : ""),
-    isPicture ? [cell.measured?.rel_mse, cell.measured?.flip].map((v) => element("td", { class: "n" }, known(v ?? NaN))) : []);
+    isPicture ? pictured(cell.measured).map((words) => element("td", { class: "n" }, words)) : []);
   const numeric = [
     ...budgets.flatMap(({ what, amount, unit }) => [`relMSE, equal ${what} (${told(amount, 3)} ${unit})`, "speed-up"]),
     "bias that stays", ...(isPicture ? ["relMSE of the picture", "FLIP of the picture"] : []),
@@ -62,6 +62,13 @@ function costTable(cells, base) {
 }
 
 const known = (v) => (Number.isFinite(v) ? told(v, 3) : "not known");
+
+// relMSE with its standard error, and FLIP.
+function pictured(measured) {
+  if (!measured) return ["not known", "not known"];
+  const { rel_mse: relMse, error, flip } = measured;
+  return [told(relMse, 3) + (error === null ? "" : ` ± ${told(error, 2)}`), told(flip, 3)];
+}
 
 // "3.1 (2.9 to 3.3)": the logarithm of a ratio of independent variances is nearly normal.
 function speedUp(ratio, cell, base) {
