@@ -16,7 +16,7 @@ pub struct Cost {
     pub rays: f64,
     /// Red, green and blue; `None` for a channel without light.
     pub channels: [Option<Error>; 3],
-    /// How far its picture, as it is, is from the reference; `None` without one of the same size.
+    /// How far its picture, as it is, is from the reference; `None` without one.
     pub picture: Option<Metrics>,
 }
 

@@ -21,23 +21,24 @@ pub struct Picture {
     pub raster: Raster,
     /// The stored image against which it is shown, if there is one.
     pub reference: Option<Raster>,
-    /// How far it is from the reference, where that has as many pixels and all of both are numbers.
+    /// How far it is from the reference, on the grid of that; `None` where there is none or not all pixels are numbers.
     pub metrics: Option<Metrics>,
     /// Whether a map of its difference from the reference lies beside it.
     pub has_map: bool,
 }
 
 impl Picture {
+    /// Compares it with its reference on the grid that both have.
     fn measure(&mut self) {
         let Some(reference) = &self.reference else { return };
-        let ([ours, error], [right, noise]) = (self.raster.rgb(), reference.rgb());
-        let is_finite = |pixels: &[Rgb]| pixels.iter().all(|pixel| pixel.is_finite());
-        if ours.len() != right.len() || ![&ours, &error, &right, &noise].iter().all(|p| is_finite(p)) {
-            return;
+        let ours = self.raster.reduced(self.raster.width / reference.width);
+        let [mean, error, right, noise] = &[ours.rgb(), reference.rgb()].concat()[..] else { return };
+        let is_finite = |pixels: &Vec<Rgb>| pixels.iter().all(|pixel| pixel.is_finite());
+        if [mean, error, right, noise].into_iter().all(is_finite) {
+            let (width, height) = (ours.width, ours.height);
+            let image = Image { width, height, pixels: mean, std_error: Some(error) };
+            self.metrics = Some(metrics::of(image, Image { pixels: right, std_error: Some(noise), ..image }));
         }
-        let (width, height) = (self.raster.width, self.raster.height);
-        let image = Image { width, height, pixels: &ours, std_error: Some(&error) };
-        self.metrics = Some(metrics::of(image, Image { pixels: &right, std_error: Some(&noise), ..image }));
     }
 }
 

@@ -60,6 +60,34 @@ impl Raster {
         images::exposure(r.iter().zip(g).zip(b).map(|((&r, &g), &b)| f64::from(r.max(g).max(b))))
     }
 
+    /// The means of squares of `edge` x `edge` pixels; pixels have independent errors. `edge` divides width and height.
+    pub fn reduced(&self, edge: usize) -> Self {
+        if edge == 1 {
+            return self.clone(); // bit by bit, also what is not a number
+        }
+        let (width, height) = (self.width / edge, self.height / edge);
+        let square = move |i: usize| {
+            let corner = i / width * edge * self.width + i % width * edge;
+            (0..edge * edge).map(move |k| corner + k / edge * self.width + k % edge)
+        };
+        let count = (edge * edge) as f64;
+        let mean = |values: &Vec<f32>| {
+            let one = |i| square(i).map(|at| f64::from(values[at])).sum::<f64>() / count;
+            (0..width * height).map(|i| one(i) as f32).collect()
+        };
+        let error = |values: &Vec<f32>| {
+            let one = |i| square(i).map(|at| f64::from(values[at]) * f64::from(values[at])).sum::<f64>();
+            (0..width * height).map(|i| (one(i).sqrt() / count) as f32).collect()
+        };
+        Raster {
+            width,
+            height,
+            mean: self.mean.each_ref().map(mean),
+            std_error: self.std_error.each_ref().map(error),
+            samples: self.samples,
+        }
+    }
+
     /// Means and standard errors, pixel by pixel.
     pub fn rgb(&self) -> [Vec<Rgb>; 2] {
         [&self.mean, &self.std_error].map(|[r, g, b]| {
@@ -111,4 +139,29 @@ fn code(error: f32) -> u16 {
 fn fold(difference: u16) -> u16 {
     let signed = difference as i16;
     ((signed << 1) ^ (signed >> 15)) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn squares_have_the_mean_of_their_pixels_and_its_error() {
+        let mean: Vec<f32> = (0..24).map(|i| i as f32).collect();
+        let raster = Raster {
+            width: 6,
+            height: 4,
+            mean: [mean.clone(), mean.clone(), vec![f32::NAN; 24]],
+            std_error: [vec![2.0; 24], vec![0.0; 24], mean.clone()],
+            samples: 5,
+        };
+        let reduced = raster.reduced(2);
+        assert_eq!((reduced.width, reduced.height, reduced.samples), (3, 2, 5));
+        // 0, 1, 6, 7 and so on
+        assert_eq!(reduced.mean[0], [3.5, 5.5, 7.5, 15.5, 17.5, 19.5]);
+        assert!(reduced.mean[2].iter().all(|v| v.is_nan()));
+        assert_eq!(reduced.std_error[0], [1.0; 6]);
+        assert_eq!(reduced.std_error[1], [0.0; 6]);
+        assert_eq!(reduced.std_error[2][0], (86.0_f32).sqrt() / 4.0);
+    }
 }

@@ -19,7 +19,7 @@ pub fn section(lookup: &Lookup<'_>, costs: &[Cost]) -> Markup {
                 }
                 @if costs.iter().any(|cost| cost.picture.is_some()) {
                     p {
-                        "relMSE of a picture, as it is: squared error over squared reference, plus 0.01 W² m⁻⁴ sr⁻², averaged "
+                        "relMSE of a picture, as it is, on the grid of its reference: squared error over squared reference, plus 0.01 W² m⁻⁴ sr⁻², averaged "
                         "over pixels and channels, less what the reference's own noise adds (Rousselle, Knaus and Zwicker 2011). "
                         "FLIP: how different the two look when they are flipped, from 0 to 1 (HDR-FLIP, Andersson et al. 2021). "
                         a href="pictures.csv" { "pictures.csv" } " has both."

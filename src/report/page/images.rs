@@ -9,23 +9,34 @@ use crate::report::tilemap::{self, RATE};
 use maud::{Markup, html};
 use serde_json::{Value, json};
 
+/// The pictures of a page take no more letters than this, so that it stays under 5 MB.
+const MOST: usize = 4_200_000;
+
 /// All pictures; nothing where there are none.
 pub fn section(lookup: &Lookup<'_>, pictures: &[Picture]) -> Markup {
+    let (edge, data) = fitting(pictures.iter().map(|p| (&p.raster, p.reference.as_ref())).collect());
     html! {
         @if !pictures.is_empty() {
             section #images {
                 h2 { "Images" }
-                (explanation(pictures))
+                (explanation(pictures, edge))
                 div #viewer {}
                 noscript { (files(lookup, pictures)) }
-                (data(lookup, pictures))
+                (description(lookup, pictures, &data))
+                (data.pixels)
             }
         }
     }
 }
 
-fn explanation(pictures: &[Picture]) -> Markup {
+fn explanation(pictures: &[Picture], edge: usize) -> Markup {
     html! {
+        @if edge > 1 {
+            p.warn {
+                "The page would be too large with all pixels: each one here is the mean of " (edge) " × " (edge) " of the EXR "
+                "files, and so are the values under the pointer."
+            }
+        }
         p {
             "Same exposure for all pictures, here and in the PNG files; the EXR files hold mean, variance, samples and bias "
             "against the reference. Values under the pointer are those of the EXR files, their standard errors to 3 %."
@@ -59,47 +70,88 @@ fn label(lookup: &Lookup<'_>, picture: &Picture) -> String {
     lookup.plan.label(&lookup.plan.cells[picture.cell])
 }
 
-/// What the viewer reads: a description of all, then the pixels of each picture and of each reference.
-fn data(lookup: &Lookup<'_>, pictures: &[Picture]) -> Markup {
-    let mut references: Vec<&Raster> = Vec::new();
-    let mut described = Vec::new();
-    for picture in pictures {
-        let reference = picture.reference.as_ref().map(|wanted| {
+/// Pictures and references as the page carries them.
+struct Data {
+    /// Pixels of each picture from left to right and from top to bottom.
+    sizes: Vec<(usize, usize)>,
+    /// Which reference each picture has.
+    reference_of: Vec<Option<usize>>,
+    /// Those of each reference.
+    reference_sizes: Vec<(usize, usize)>,
+    /// The blocks that hold them.
+    pixels: Markup,
+}
+
+/// The pictures in the finest means of 1, 2, 4, ... pixels along each edge that fit into the page.
+fn fitting(pictures: Vec<(&Raster, Option<&Raster>)>) -> (usize, Data) {
+    let mut edge = 1;
+    loop {
+        let data = data(&pictures, edge);
+        let divides = |raster: &&Raster| [raster.width, raster.height].iter().all(|n| n % (2 * edge) == 0);
+        if data.pixels.0.len() <= MOST || !pictures.iter().all(|(picture, _)| divides(picture)) {
+            return (edge, data);
+        }
+        edge *= 2;
+    }
+}
+
+fn data(pictures: &[(&Raster, Option<&Raster>)], edge: usize) -> Data {
+    let size = |raster: &Raster| (raster.width, raster.height);
+    let shown: Vec<Raster> = pictures.iter().map(|(picture, _)| picture.reduced(edge)).collect();
+    let mut references: Vec<Raster> = Vec::new();
+    let mut reference_of = Vec::new();
+    for (picture, (_, reference)) in shown.iter().zip(pictures) {
+        // a reference may be coarser than the picture, and is never finer
+        let wanted = reference.map(|r| r.reduced(r.width.div_ceil(picture.width)));
+        reference_of.push(wanted.map(|wanted| {
             references.iter().position(|known| *known == wanted).unwrap_or_else(|| {
                 references.push(wanted);
                 references.len() - 1
             })
-        });
-        described.push(described_as(lookup, picture, reference));
+        }));
     }
-    let size = |r: &&Raster| json!({ "width": r.width, "height": r.height });
-    let all = json!({
-        "exposure": pictures::exposure(pictures),
-        "full": FULL,
-        "rate": RATE,
-        "map": MAP,
-        "pictures": described,
-        "references": references.iter().map(size).collect::<Vec<_>>(),
-    });
-    html! {
-        (packed::json("viewer-data", &all))
-        @for (i, picture) in pictures.iter().enumerate() {
-            (packed::bytes(&format!("viewer-picture-{i}"), &picture.raster.packed()))
-        }
-        @for (i, reference) in references.iter().enumerate() {
-            (packed::bytes(&format!("viewer-reference-{i}"), &reference.packed()))
-        }
-    }
+    let block = |kind: &str, i: usize, r: &Raster| packed::bytes(&format!("viewer-{kind}-{i}"), &r.packed());
+    let pixels = html! {
+        @for (i, picture) in shown.iter().enumerate() { (block("picture", i, picture)) }
+        @for (i, reference) in references.iter().enumerate() { (block("reference", i, reference)) }
+    };
+    let (sizes, reference_sizes) = (shown.iter().map(size).collect(), references.iter().map(size).collect());
+    Data { sizes, reference_of, reference_sizes, pixels }
 }
 
-fn described_as(lookup: &Lookup<'_>, picture: &Picture, reference: Option<usize>) -> Value {
+/// What the viewer reads first: a description of all.
+fn description(lookup: &Lookup<'_>, pictures: &[Picture], data: &Data) -> Markup {
+    let size = |&(width, height): &(usize, usize)| json!({ "width": width, "height": height });
+    let described = pictures.iter().zip(&data.sizes).zip(&data.reference_of);
+    let described: Vec<Value> = described
+        .map(|((picture, &size), &reference)| described_as(lookup, picture, size, reference))
+        .collect();
+    packed::json(
+        "viewer-data",
+        &json!({
+            "exposure": pictures::exposure(pictures),
+            "full": FULL,
+            "rate": RATE,
+            "map": MAP,
+            "pictures": described,
+            "references": data.reference_sizes.iter().map(size).collect::<Vec<_>>(),
+        }),
+    )
+}
+
+fn described_as(
+    lookup: &Lookup<'_>,
+    picture: &Picture,
+    (width, height): (usize, usize),
+    reference: Option<usize>,
+) -> Value {
     let cell = &lookup.plan.cells[picture.cell];
     json!({
         "short": format!("{} {}", cell.estimator_label, lookup.plan.rule_label(cell)),
         "scene": cell.scene_label,
         "name": picture.name,
-        "width": picture.raster.width,
-        "height": picture.raster.height,
+        "width": width,
+        "height": height,
         "samples": picture.raster.samples,
         "paired": cell.paired,
         "map": picture.has_map,
@@ -123,5 +175,37 @@ fn number(z: f64) -> String {
         if z > 0.0 { "Infinity" } else { "-Infinity" }.to_owned()
     } else {
         format!("{z:.3}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise, which nothing can compress.
+    fn noise(edge: usize) -> Raster {
+        let mut state = 1_u32;
+        let mut values = || {
+            let mut next = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                1.0 + (state >> 9) as f32 / 8_388_608.0
+            };
+            (0..edge * edge).map(|_| next()).collect::<Vec<f32>>()
+        };
+        let mean = [values(), values(), values()];
+        Raster { width: edge, height: edge, std_error: mean.clone(), mean, samples: 4 }
+    }
+
+    #[test]
+    fn what_fits_is_carried_pixel_by_pixel_and_the_rest_in_means() {
+        let (small, large) = (noise(64), noise(512));
+        let (edge, data) = fitting(vec![(&small, None)]);
+        assert_eq!((edge, &data.sizes[..]), (1, &[(64, 64)][..]));
+        let (edge, data) = fitting(vec![(&large, Some(&large)), (&large, Some(&small)), (&small, None)]);
+        assert_eq!((edge, &data.sizes[..]), (2, &[(256, 256), (256, 256), (32, 32)][..]));
+        // a reference is no finer than its picture
+        assert_eq!(data.reference_sizes, [(256, 256), (64, 64)]);
+        assert_eq!(data.reference_of, [Some(0), Some(1), None]);
+        assert!(data.pixels.0.len() <= MOST);
     }
 }
