@@ -148,7 +148,7 @@ fn text_has_the_size_that_is_asked_for_and_stays_text() {
         for letter in "Varince q".chars().filter(|letter| *letter != ' ') {
             assert!(letters.contains(&format!("<{:04X}>", letter as u32)), "no {letter}");
         }
-        assert!(!raw.contains("/CreationDate") && !raw.contains("/Image"));
+        assert!(!raw.contains("/CreationDate") && !raw.contains("/Subtype /Image"));
         assert!(!written.contains_key("bias.pdf"), "only what was asked for");
     }
 }
