@@ -116,7 +116,27 @@ const NUMBERS: [Case; 32] = [
     ),
 ];
 
-const COMBINATIONS: [Case; 16] = [
+const COMBINATIONS: [Case; 20] = [
+    (
+        "scene = [{ furnace = {}, furnace_box = {} }]",
+        "{ furnace = {}, furnace_box = {} }",
+        "`furnace_box` is another; give it a table of its own",
+    ),
+    (
+        "claim = [{ cost = { alpha = 0.1, margin = 0.1, scene = \"kitchen\" } }]",
+        "\"kitchen\"",
+        "a claim names the scene `kitchen`; there are: furnace",
+    ),
+    (
+        "claim = [{ agree = { estimator = \"implicit\", roulette = \"none\", alpha = 0.1, margin = 0.1 } }]",
+        "\"none\"",
+        "agree names `implicit` with `none`; there are: `implicit` with `albedo`",
+    ),
+    (
+        "plot = [{ over = { parameter = \"q\", show = [\"bias\"] } }]",
+        "\"q\"",
+        "a plot goes over `q`, which is not swept",
+    ),
     ("scene = []", "[]", "an empty list of scenes leaves nothing to run; give at least one"),
     ("estimator = []", "[]", "an empty list of estimators leaves nothing to run; give at least one"),
     ("roulette = []", "[]", "an empty list of termination rules leaves nothing to run; give at least one"),

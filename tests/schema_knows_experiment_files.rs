@@ -73,7 +73,7 @@ fn all_experiments_are_taken() {
 }
 
 /// A line each, all of which the program refuses and an editor can know to be wrong.
-const MISTAKES: [&str; 52] = [
+const MISTAKES: [&str; 53] = [
     "sed = 7",
     "seed = -1",
     "seed = 1.5",
@@ -122,6 +122,7 @@ const MISTAKES: [&str; 52] = [
     "roulette = [{ constant = { q = [] } }]",
     "roulette = [{ depth_clamp = { bounces = 2.5 } }]",
     "roulette = [{ throughput = { floor = 0 } }]",
+    "claim = [{ length = { alpha = 0.1 }, independent = { alpha = 0.1 } }]",
     "claim = [{ unbiased = { alpha = 1e-3 } }]",
     "claim = [{ unbiased = { alpha = 1.5, margin = 0.1 } }]",
     "null = [{ law = { rare = { p = 0 } }, samples = 9, runs = 9, level = 0.01 }]",
@@ -151,7 +152,7 @@ const RIGHT: [&str; 30] = [
     "scene = [{ integrating_sphere = { light_fraction = [0.01, 0.9] } }]",
     "scene = [{ cornell_box = { resolution = 1 } }]",
     "scene = [{ cornell_flush = { tile = [1, 6], blocks = true } }]",
-    "scene = [{ many_spheres = { count = 1, resolution = 2 } }]",
+    "scene = [{ many_spheres = { count = 10, resolution = 2 } }]",
     "scene = [{ caustic_glass = { light = 0.3, resolution = 2 } }]",
     "scene = [{ dof = { aperture = [0.5, 0.01], resolution = 2 } }]",
     "scene = [{ motion = { travel = [0, 1], resolution = 2 } }]",
@@ -162,7 +163,7 @@ const RIGHT: [&str; 30] = [
     "estimator = [{ recursive = { samples = [1, 3], depth = 2 } }]",
     "roulette = [{ constant = { q = [0.1, 0.9] } }]",
     "roulette = [{ constant = { q = 1.5, from = 2, clamp = 5 } }]",
-    "roulette = [{ throughput = { floor = 0.9, from = 0 } }, { throughput = {} }]",
+    "roulette = [{ throughput = { floor = 0.9, from = 2 } }, { throughput = {} }]",
     "roulette = [{ depth_clamp = { bounces = [0, 9] } }]",
     "claim = [{ cost = { alpha = 0.999, margin = 1e-9, scene = \"furnace\" } }, { length = { alpha = 0.1 } }]",
     "claim = [{ agree = { estimator = \"implicit\", roulette = \"albedo\", alpha = 0.1, margin = 0.1 } }]",

@@ -38,8 +38,14 @@ impl<'de, T: DeserializeOwned> Visitor<'de> for NamedVisitor<T> {
         T::deserialize(MapAccessDeserializer::new(table))
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
-        T::deserialize(MapAccessDeserializer::new(map))
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<T, A::Error> {
+        let chosen = T::deserialize(MapAccessDeserializer::new(&mut map))?;
+        match map.next_key::<String>()? {
+            None => Ok(chosen),
+            Some(other) => Err(A::Error::custom(format!(
+                "a table names one choice, and `{other}` is another; give it a table of its own"
+            ))),
+        }
     }
 }
 

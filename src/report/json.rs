@@ -10,7 +10,8 @@ pub use run::Run;
 pub use study::Study;
 
 use crate::experiment::{CellPlan, Plan};
-use schemars::{JsonSchema, schema_for};
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -62,7 +63,8 @@ impl Object {
 
 /// The JSON schema of all that `--format json` prints.
 pub fn schema() -> String {
-    let mut schema = schema_for!(Object);
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    let mut schema = settings.into_generator().into_root_schema_for::<Object>();
     schema.insert("title".to_owned(), "A line of --format json".into());
     serde_json::to_string_pretty(&schema).expect("a schema is JSON") + "\n"
 }

@@ -2,7 +2,7 @@
 
 use crate::HELD;
 use crate::args::Kind;
-use anstream::println;
+use anstream::print;
 use furnace::experiment::spec;
 use furnace::report::json;
 
@@ -12,6 +12,6 @@ pub fn print(of: Kind) -> u8 {
         Kind::Experiment => spec::schema(),
         Kind::Result => json::schema(),
     };
-    println!("{schema}");
+    print!("{schema}");
     HELD
 }

@@ -49,12 +49,12 @@ fn names(all: impl Iterator<Item = (&'static str, String)>) -> Schema {
 
 /// A function for each deserializer, by the same name.
 macro_rules! schemas {
-    ($($name:ident: $schema:expr;)*) => {
-        $(#[doc = concat!("What `", stringify!($name), "` takes.")]
+    ($($name:ident: $schema:expr;)*) => { $(
+        #[doc = concat!("What `", stringify!($name), "` takes.")]
         pub fn $name(_: &mut SchemaGenerator) -> Schema {
             $schema
-        })*
-    };
+        }
+    )* };
 }
 
 const POSITIVE: &Bounds = &[("exclusiveMinimum", 0.0)];

@@ -55,7 +55,7 @@ pub enum EstimatorSpec {
     PhotonMap(PhotonMapSpec),
     /// A sequence of photon maps whose radius shrinks.
     Progressive(ProgressiveSpec),
-    /// An estimator with a known mistake; see [`crate::faults`].
+    /// An estimator with a known mistake, in files that say `faults = true`.
     Fault {
         /// Which mistake.
         name: FaultNames,

@@ -35,7 +35,7 @@ Examples:
 pub const REFERENCE: &str = "\
 Examples:
   experiment reference cornell_box --until-error 0.01
-  experiment reference experiments/caustics.toml:caustic_glass --estimator light_tracing -o glass.exr";
+  experiment reference experiments/caustics.toml:caustic_glass -o glass.exr";
 
 pub const EXPORT: &str = "\
 Examples:
@@ -53,8 +53,8 @@ Examples:
   experiment completions fish
 
 The script calls the program that printed it. To load it when a shell starts:
-  bash        source <(experiment completions bash)                     in ~/.bashrc
-  zsh         source <(experiment completions zsh)                      in ~/.zshrc
-  fish        experiment completions fish | source                      in ~/.config/fish/config.fish
-  elvish      eval (experiment completions elvish | slurp)              in ~/.elvish/rc.elv
-  powershell  experiment completions powershell | Out-String | Invoke-Expression  in $PROFILE";
+  ~/.bashrc                   source <(experiment completions bash)
+  ~/.zshrc                    source <(experiment completions zsh)
+  ~/.config/fish/config.fish  experiment completions fish | source
+  ~/.elvish/rc.elv            eval (experiment completions elvish | slurp)
+  $PROFILE of PowerShell      experiment completions powershell | Out-String | iex";
