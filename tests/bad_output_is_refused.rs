@@ -133,9 +133,9 @@ fn reports_of_what_has_not_run() {
     let place = place();
     refuses(place.path(), &["report", "x"], &["cannot read reports/x/cells.json"]);
     let place = place_with_result();
-    fs::remove_file(place.path().join("reports/x/timing.csv")).unwrap();
+    fs::remove_file(place.path().join("reports/x/run.json")).unwrap();
     let before = contents(place.path());
-    refuses(place.path(), &["report", "x"], &["cannot read reports/x/timing.csv"]);
+    refuses(place.path(), &["report", "x"], &["cannot read reports/x/run.json"]);
     assert_eq!(contents(place.path()), before);
 }
 

@@ -6,11 +6,13 @@ use std::process::Command as Shell;
 
 /// A small file in the place of the experiments that examples name.
 const SMALL: &str = r#"question = "Does it work?"
-samples = 64
+samples = 1024
+claim = [{ unbiased = { alpha = 1e-3, margin = 0.05 } }]
+plot = [{ bias = {} }]
 [[grid]]
 scene = ["furnace", { caustic_glass = { resolution = 2 } }]
 estimator = ["implicit"]
-roulette = [{ constant = { q = 0.5 } }]
+roulette = [{ constant = { q = 0.9 } }]
 "#;
 
 fn help(args: &[&str]) -> String {
@@ -50,7 +52,7 @@ fn every_command_has_some_and_they_work() {
     let commands = commands();
     assert_eq!(
         commands.join(" "),
-        "list plan report new render reference export schema completions",
+        "list plan report figure new render reference export schema completions",
         "a command without a test"
     );
     let place = tempfile::tempdir().unwrap();

@@ -219,9 +219,8 @@ pub fn csv(comparison: &Comparison) -> Vec<u8> {
     csv.into_inner().expect("a Vec takes all")
 }
 
-/// The comparison as JSON; null if there is none.
-pub fn json(comparison: Option<&Comparison>) -> Value {
-    let Some(comparison) = comparison else { return Value::Null };
+/// The comparison as JSON.
+pub fn json(comparison: &Comparison) -> Value {
     let answer = |answer: &Answer| {
         let change = answer.change.map(|c| json!({ "estimate": c.estimate, "low": c.low, "high": c.high }));
         json!({ "change": change, "finding": word(answer.finding), "note": answer.why })

@@ -17,7 +17,7 @@ Writes NAME.svg, NAME.pdf and NAME.csv of each figure, and EXPERIMENT.tex with t
 Examples:
   experiment figure rr_sweep
   experiment figure rr_sweep --figure bias --width 177mm -o paper/figures
-  experiment figure cornell --width 241pt --font-size 7pt
+  experiment figure rr_sweep --width 241pt --font-size 7pt
 
 In LaTeX, \\includegraphics{bias.pdf} as it is, without a width: then the text has the size that was asked for.
 What a column is wide, \\the\\columnwidth tells.";

@@ -61,10 +61,14 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
     if cli.options.format == Format::Mitsuba && !exports {
         return Err(Error::Refused("only `export` writes --format mitsuba".to_owned()));
     }
-    let has_objects =
-        matches!(cli.command, None | Some(Command::List | Command::Plan { .. } | Command::Report { .. }));
+    let has_objects = matches!(
+        cli.command,
+        None | Some(Command::List | Command::Plan { .. } | Command::Report { .. } | Command::Figure(_))
+    );
     if cli.options.format == Format::Json && !has_objects && !exports {
-        return Err(Error::Refused("--format json is for runs, `list`, `plan` and `report`".to_owned()));
+        return Err(Error::Refused(
+            "--format json is for runs, `list`, `plan`, `report` and `figure`".to_owned(),
+        ));
     }
     match &cli.command {
         None => run::all(&cli.names, &cli.options, stop),

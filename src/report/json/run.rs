@@ -32,7 +32,8 @@ pub struct Run {
     /// Cells that cannot be run.
     left_out: Vec<LeftOut>,
     /// The changes since the run that --baseline names, as docs/json.md tells; null without one.
-    baseline: serde_json::Value,
+    #[schemars(required)]
+    baseline: Option<serde_json::Value>,
     #[serde(flatten)]
     files: Files,
 }
@@ -124,7 +125,7 @@ impl Run {
             error_probability: budget::total(lookup),
             seed: plan.spec.seed,
             cells: cells.filter(|&c| !lookup.cell(c).is_empty()).map(|c| measured(lookup, plan, c)).collect(),
-            baseline: baseline::json(comparison),
+            baseline: comparison.map(baseline::json),
             left_out: left_out(plan),
             files: Files::of(folder),
         }
