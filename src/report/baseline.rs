@@ -76,37 +76,30 @@ fn ratio(value: f64) -> String {
     if (0.1..10.0).contains(&value) { format!("{value:.3}") } else { number::short(value) }
 }
 
-/// What is concluded about a cell: "no change detected", or every quantity of which there is more to say; and what is not
-/// known.
+/// What is concluded about a cell: "no change detected", or every quantity of which there is more to say.
 pub fn conclusion(cell: &Compared) -> String {
-    let quantities = quantities(cell);
-    let found = quantities.map(|quantity| (quantity.0, worst(quantity).1.finding));
+    let found = quantities(cell).map(|quantity| (quantity.0, worst(quantity).1.finding));
+    if found.iter().all(|(_, finding)| *finding == Finding::Identical) {
+        return word(Finding::Identical).to_owned();
+    }
     let told = found.iter().filter(|(_, finding)| *finding > Finding::None);
     let told: Vec<String> = told.map(|(name, finding)| format!("{name} {}", word(*finding))).collect();
-    let said = match told.is_empty() {
-        true if found.iter().all(|(_, finding)| *finding == Finding::Identical) => {
-            word(Finding::Identical).to_owned()
-        }
-        true => word(Finding::None).to_owned(),
-        false => told.join(", "),
-    };
-    let unknown: Vec<String> = quantities.into_iter().filter_map(unknown).collect();
-    if unknown.is_empty() {
-        said
-    } else {
-        format!("{said} ({}: {})", word(Finding::Unknown), unknown.join(", "))
-    }
+    if told.is_empty() { word(Finding::None).to_owned() } else { told.join(", ") }
 }
 
-/// "variance R", if that is the channel of which nothing is known; "variance", if nothing is known of any.
-fn unknown((name, answers): Quantity<'_>) -> Option<String> {
-    let channels = answers.iter().zip(CHANNELS).filter(|(answer, _)| answer.finding == Finding::Unknown);
-    let letters: Vec<&str> = channels.map(|(_, letter)| letter).collect();
-    match letters.len() {
-        0 => None,
-        all if all == answers.len() => Some(name.to_owned()),
-        _ => Some(format!("{name} {}", letters.join(" "))),
-    }
+/// "not known: mean R, variance": of which channels, or of which quantities in all channels, nothing can be said.
+pub fn unknown(cell: &Compared) -> Option<String> {
+    let of_quantity = |(name, answers): Quantity<'_>| {
+        let channels = answers.iter().zip(CHANNELS).filter(|(answer, _)| answer.finding == Finding::Unknown);
+        let letters: Vec<&str> = channels.map(|(_, letter)| letter).collect();
+        match letters.len() {
+            0 => None,
+            all if all == answers.len() => Some(name.to_owned()),
+            _ => Some(format!("{name} {}", letters.join(" "))),
+        }
+    };
+    let unknown: Vec<String> = quantities(cell).into_iter().filter_map(of_quantity).collect();
+    (!unknown.is_empty()).then(|| format!("{}: {}", word(Finding::Unknown), unknown.join(", ")))
 }
 
 /// The most serious finding about a cell.
@@ -162,7 +155,8 @@ pub const COLUMNS: [&str; 6] = ["cell", "mean", "variance", "efficiency", "rays"
 /// A line a cell.
 pub fn line(cell: &Compared) -> [String; 6] {
     let [mean, variance, efficiency, rays] = quantities(cell).map(read);
-    [cell.label.clone(), mean, variance, efficiency, rays, conclusion(cell)]
+    let unknown = unknown(cell).map_or_else(String::new, |unknown| format!(" ({unknown})"));
+    [cell.label.clone(), mean, variance, efficiency, rays, conclusion(cell) + &unknown]
 }
 
 /// The comparison as text; columns aligned.

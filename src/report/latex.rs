@@ -38,7 +38,7 @@ pub fn tables(lookup: &Lookup<'_>) -> String {
         }
     }
     let mut out = format!(
-        "% The verdicts of {}, seed {}, by furnace {}. Needs \\usepackage{{booktabs}}.\n",
+        "% The verdicts of {}, seed {}, by furnace {}. Needs \\usepackage{{booktabs}}, and\n% as much room as two columns have, 160 mm or so.\n",
         text(&plan.name),
         plan.spec.seed,
         env!("CARGO_PKG_VERSION")

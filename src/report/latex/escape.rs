@@ -58,7 +58,8 @@ pub(super) fn text(plain: &str) -> String {
             // German packages give it a meaning
             '"' => write!(out, "\\char34{{}}"),
             ' '..='~' => write!(out, "{letter}"),
-            '\u{a1}'..='\u{17f}' | '–' | '—' | '…' if !LACKING.contains(letter) => {
+            '\u{a1}'..='\u{17f}' | '–' | '—' | '‘' | '’' | '“' | '”' | '…' if !LACKING.contains(letter) =>
+            {
                 write!(out, "{letter}")
             }
             letter if letter.is_control() || letter.is_whitespace() => write!(out, " "),

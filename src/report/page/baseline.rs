@@ -1,7 +1,7 @@
 //! What has changed since an earlier run.
 
 use crate::experiment::baseline::{Comparison, Finding};
-use crate::report::baseline::{COLUMNS, conclusion, line, most, notes, subject};
+use crate::report::baseline::{COLUMNS, conclusion, line, most, notes, subject, unknown};
 use maud::{Markup, html};
 
 /// A line a cell that both runs have; nothing without a comparison.
@@ -19,7 +19,10 @@ pub fn section(comparison: Option<&Comparison>) -> Markup {
                         @let [label, changes @ .., _] = line(compared);
                         tr {
                             td { (label) } @for change in changes { td.n { (change) } }
-                            td { span class={ "badge " (class(most(compared))) } { (conclusion(compared)) } }
+                            td {
+                                span class={ "badge " (class(most(compared))) } { (conclusion(compared)) }
+                                @if let Some(unknown) = unknown(compared) { div.note { (unknown) } }
+                            }
                         }
                     } }
                 } }
