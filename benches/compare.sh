@@ -5,7 +5,7 @@
 #
 # Mitsuba comes from PyPI into a folder that is removed at the end. Where no LLVM on this machine can compile its code
 # (versions before 19 give up on AVX-512), Debian's libllvm19 is unpacked into the same folder; DRJIT_LIBLLVM_PATH, if
-# set, is taken as it is. docs/performance.md tells what is measured. Exit status: 0 measured, or Mitsuba cannot be had;
+# set, is taken as it is. docs/src/performance.md tells what is measured. Exit status: 0 measured, or Mitsuba cannot be had;
 # 1 both renderers do not measure the same, or something broke.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -57,3 +57,10 @@ pub mod faults;
 pub mod experiment;
 
 pub mod report;
+
+/// The guide's Rust, which the tests of documentation compile and run.
+#[cfg(doctest)]
+mod guide {
+    #[doc = include_str!("../docs/src/own_estimator.md")]
+    struct OwnEstimator;
+}

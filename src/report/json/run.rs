@@ -31,7 +31,7 @@ pub struct Run {
     cells: Vec<Measured>,
     /// Cells that cannot be run.
     left_out: Vec<LeftOut>,
-    /// The changes since the run that --baseline names, as docs/json.md tells; null without one.
+    /// The changes since the run that --baseline names, as docs/src/json.md tells; null without one.
     #[schemars(required)]
     baseline: Option<serde_json::Value>,
     #[serde(flatten)]
