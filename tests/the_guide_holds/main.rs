@@ -44,7 +44,8 @@ fn holds(document: &str) {
     let (fences, _) = split(&text);
     let commands: String = fences.iter().filter(|f| f.kind == "console").map(|f| f.text.as_str()).collect();
     let place = place(&commands);
-    let mut session = Session { place: place.path(), patched: String::new(), status: 0, printed: String::new() };
+    let mut session =
+        Session { place: place.path(), patched: String::new(), status: 0, printed: String::new() };
     for fence in fences {
         println!("{document}:{}", fence.line); // shown where it fails
         match fence.kind.as_str() {
@@ -57,9 +58,13 @@ fn holds(document: &str) {
             "toml wrong" => part::refused(&session, &fence.text),
             "console" => console::run(&mut session, &fence.text),
             "json" => has_form(&parse(&fence.text), &parse(&session.printed)),
-            "sh" => assert_eq!(document, "README.md", "`sh` is for the README's two commands; see readme_holds.rs"),
+            "sh" => assert_eq!(
+                document, "README.md",
+                "`sh` is for the README's two commands; see readme_holds.rs"
+            ),
             "text" => {
-                let is_command = |line: &str| ["$ ", "experiment ", "cargo "].iter().any(|c| line.starts_with(c));
+                let is_command =
+                    |line: &str| ["$ ", "experiment ", "cargo "].iter().any(|c| line.starts_with(c));
                 assert!(!fence.text.lines().any(is_command), "a command belongs to a `console`");
             }
             kind => panic!("no rule tells what to do with `{kind}`"),
@@ -156,7 +161,8 @@ fn names(schema: &Value, found: &mut BTreeSet<String>) {
     if let Some(properties) = schema.get("properties").and_then(Value::as_object) {
         found.extend(properties.keys().cloned());
     }
-    let chosen = schema.get("enum").and_then(Value::as_array).into_iter().flatten().chain(schema.get("const"));
+    let chosen =
+        schema.get("enum").and_then(Value::as_array).into_iter().flatten().chain(schema.get("const"));
     let chosen = chosen.filter_map(Value::as_str).map(str::to_owned);
     found.extend(chosen.filter(|name| furnace::faults::find(name).is_none()));
     match schema {
@@ -184,7 +190,8 @@ fn the_readme_lists_every_experiment() {
     let readme = read(Path::new("README.md"));
     let table = readme.split("| experiment | question | found |\n").nth(1).expect("a table of experiments");
     let rows = table.lines().skip(1).take_while(|line| line.starts_with('|'));
-    let listed: BTreeSet<String> = rows.map(|row| row.split('`').nth(1).expect("a name").to_owned()).collect();
+    let listed: BTreeSet<String> =
+        rows.map(|row| row.split('`').nth(1).expect("a name").to_owned()).collect();
     let files = fs::read_dir(root().join("experiments")).unwrap().map(|entry| entry.unwrap().path());
     let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "toml"));
     assert_eq!(listed, files.map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned()).collect());
