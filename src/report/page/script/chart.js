@@ -34,7 +34,12 @@ function chart(panel, { logX, logY, width = 520 }) {
   });
   svg.append(...axes(view), ...panel.regions.map((r) => shade(view, r)), ...panel.marks.map((m) => mark(view, m)));
   panel.series.forEach((series) => svg.append(drawn(view, series)));
-  if (panel.title) svg.append(text(frame.left, 14, panel.title, { "font-weight": "bold" }));
+  if (panel.title) {
+    // a long one starts further left, and is smaller where that does not do
+    const [long, room] = [1.1 * LETTER * panel.title.length, width - 4];
+    const x = Math.max(4, Math.min(frame.left, room - long));
+    svg.append(text(x, 14, panel.title, { "font-weight": "bold", "font-size": Math.min(11, (11 * (room - 4)) / long) }));
+  }
   return { svg, hits: view.hits };
 }
 

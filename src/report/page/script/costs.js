@@ -44,13 +44,13 @@ function costTable(cells, base) {
   const row = (cell) => element("tr", { class: cell === base ? "base" : null },
     element("td", {}, cell.estimator), element("td", {}, cell.rule),
     budgets.flatMap((budget) => [
-      element("td", { class: "n" }, known(after(cell, budget))),
-      element("td", { class: "n" }, speedUp(after(base, budget) / after(cell, budget), cell, base)),
+      number(after(cell, budget), known(after(cell, budget))),
+      number(after(base, budget) / after(cell, budget), speedUp(after(base, budget) / after(cell, budget), cell, base)),
     ]),
-    element("td", { class: "n" }, cell.floor ? `${told(100 * Math.sqrt(cell.floor), 3)} %` : ""),
-    isPicture ? pictured(cell.measured).map((words) => element("td", { class: "n" }, words)) : []);
+    number(cell.floor, cell.floor ? `${told(100 * Math.sqrt(cell.floor), 3)} %` : ""),
+    isPicture ? pictured(cell.measured) : []);
   const numeric = [
-    ...budgets.flatMap(({ what, amount, unit }) => [`relMSE, equal ${what} (${told(amount, 3)} ${unit})`, "speed-up"]),
+    ...budgets.flatMap(({ what, key, amount, unit }) => [`relMSE, equal ${what} (${key === "one" ? amount : told(amount, 3)} ${unit})`, "speed-up"]),
     "bias that stays", ...(isPicture ? ["relMSE of the picture", "FLIP of the picture"] : []),
   ];
   const table = element("table", {},
@@ -61,13 +61,16 @@ function costTable(cells, base) {
   return table;
 }
 
+// A cell of the table, which sorts by its value.
+const number = (value, words) => element("td", { class: "n", "data-sort": value }, words);
+
 const known = (v) => (Number.isFinite(v) ? told(v, 3) : "not known");
 
 // relMSE with its standard error, and FLIP.
 function pictured(measured) {
-  if (!measured) return ["not known", "not known"];
+  if (!measured) return [number(NaN, "not known"), number(NaN, "not known")];
   const { rel_mse: relMse, error, flip } = measured;
-  return [told(relMse, 3) + (error === null ? "" : ` ± ${told(error, 2)}`), told(flip, 3)];
+  return [number(relMse, told(relMse, 3) + (error === null ? "" : ` ± ${told(error, 2)}`)), number(flip, told(flip, 3))];
 }
 
 // "3.1 (2.9 to 3.3)": the logarithm of a ratio of independent variances is nearly normal.

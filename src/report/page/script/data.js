@@ -4,7 +4,9 @@
 async function unpack(id) {
   const block = document.getElementById(id);
   if (!block) return null;
-  const packed = Uint8Array.from(atob(block.textContent), (c) => c.charCodeAt(0));
+  const letters = atob(block.textContent);
+  const packed = new Uint8Array(letters.length);
+  for (let i = 0; i < letters.length; i++) packed[i] = letters.charCodeAt(i);
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -28,6 +30,11 @@ function element(name, attributes = {}, ...children) {
   }
   made.append(...children.flat().filter((child) => child !== null && child !== undefined));
   return made;
+}
+
+// Lets the browser answer its reader before work goes on.
+function breath() {
+  return new Promise((resume) => { setTimeout(resume); });
 }
 
 // Offers text or a blob for saving.

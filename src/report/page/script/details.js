@@ -1,7 +1,8 @@
 // What a row of the verdict table opens to.
 
 function details(cell, columns) {
-  return element("div", { class: "details" },
+  const numbers = element("div", { class: "wide" }, rows(cell.rows, columns));
+  const made = element("div", { class: "details" },
     element("h3", {}, cell.label),
     command(cell.replay),
     element("div", { class: "plots" }, cell.figures.map((data) => {
@@ -10,7 +11,9 @@ function details(cell, columns) {
       return place;
     })),
     cell.evidence && evidence(cell.evidence),
-    element("details", {}, element("summary", {}, `All ${cell.rows.length} numbers`), element("div", { class: "wide" }, rows(cell.rows, columns))));
+    element("details", {}, element("summary", {}, `All ${cell.rows.length} numbers`), numbers));
+  reachable(numbers);
+  return made;
 }
 
 // A command with a button that copies it.

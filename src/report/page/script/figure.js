@@ -6,8 +6,8 @@ function figure(place, data, name) {
   const panels = element("div", { class: "panels" });
   const status = element("div", { class: "readout", role: "status" }, " ");
   const table = element("div", { class: "wide", hidden: true });
+  let room = 0;
   const draw = () => {
-    const room = place.clientWidth || 760;
     panels.replaceChildren(...data.panels.map((panel, i) => drawnPanel(panel, i, { room, state, data, status, draw })));
     hide(panels, state.hidden);
   };
@@ -34,7 +34,21 @@ function figure(place, data, name) {
         ["svg", "png", "csv"].flatMap((kind) => [element("a", { href: `${name}.${kind}` }, kind.toUpperCase()), " "]))),
     table);
   place.setAttribute("aria-label", data.alt || data.title);
-  draw();
+  reachable(table);
+  // once it has a place, and whenever that changes
+  const fit = () => {
+    if (place.clientWidth === 0 || place.clientWidth === room) return;
+    room = place.clientWidth;
+    draw();
+  };
+  fit();
+  new ResizeObserver(fit).observe(place);
+}
+
+// Whether all that is drawn along an axis has a logarithm.
+function positive(panel, axis) {
+  const of = axis === "x" ? (p) => p.slice(0, 1) : (p) => p.slice(1);
+  return panel.series.every((series) => series.points.flatMap(of).map(real).every((v) => !(v <= 0)));
 }
 
 // One panel with the choices of its axes.
@@ -46,9 +60,10 @@ function drawnPanel(panel, i, { room, state, data, status, draw }) {
   svg.style.width = `${width}px`;
   readout(svg, hits, status, state);
   const choice = (axis, key) => {
-    if (axis.categories.length) return null;
+    const isLog = state.log[i][key];
+    if (axis.categories.length || (!isLog && !positive(panel, key === "logX" ? "x" : "y"))) return null;
     const box = element("input", { type: "checkbox", onchange: () => { state.log[i][key] = box.checked; draw(); } });
-    box.checked = state.log[i][key];
+    box.checked = isLog;
     const which = panel.lying ? "" : key === "logX" ? " x" : " y";
     return element("label", {}, box, ` log${which}`);
   };
@@ -92,7 +107,8 @@ function readout(svg, hits, status, state) {
     const box = svg.getBoundingClientRect();
     const scale = svg.viewBox.baseVal.width / box.width;
     const [x, y] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
-    const far = (hit) => Math.hypot(hit.x - x, hit.y - y);
+    // curves have points everywhere, and would hide what lies on them
+    const far = (hit) => Math.hypot(hit.x - x, hit.y - y) + (hit.isMark ? 0 : 8);
     const nearest = seen().reduce((best, hit) => (!best || far(hit) < far(best) ? hit : best), null);
     show(nearest && far(nearest) < 30 ? nearest : null);
   });

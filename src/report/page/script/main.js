@@ -15,11 +15,16 @@ document.addEventListener("DOMContentLoaded", async () => {
     filterable(table);
     const section = document.getElementById("costs");
     if (section) costs(section, data.costs, run?.seconds);
+  }
+  document.querySelectorAll("table.matrix").forEach(sortable);
+  document.querySelectorAll(".wide").forEach(reachable);
+  performance.mark("interactive");
+  if (data) {
     for (const { name, figure: shown } of data.figures) {
+      await breath();
       figure(document.querySelector(`figure[data-name="${CSS.escape(name)}"]`), shown, name);
     }
   }
-  document.querySelectorAll("table.matrix").forEach(sortable);
   await viewer();
   document.body.dataset.ready = "yes"; // for tests: all is there
 });

@@ -27,7 +27,8 @@ function drawn(view, series) {
     }
     if (beyond(point)) group.append(flag(view, point, colour));
     const [x, y] = shifted(view, series, point);
-    view.hits.push({ x, y, series: series.label, colour: series.colour, words: words(view, series, point) });
+    const isMark = Boolean(series.marker) || series.style === "bars";
+    view.hits.push({ x, y, series: series.label, isMark, words: words(view, series, point) });
   });
   return group;
 }

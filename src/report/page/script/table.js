@@ -1,7 +1,8 @@
 // Tables that sort, and the verdict table, which also filters and opens.
 
-// What a cell sorts by: its largest number, or its text.
+// What a cell sorts by: what it says of itself, or its largest number, or its text.
 function sortKey(cell) {
+  if (cell?.dataset.sort) return Number(cell.dataset.sort);
   const words = cell?.textContent.trim() ?? "";
   if (!cell?.classList.contains("n")) return words.toLowerCase();
   const found = words.match(/[-+−]?\d[\d.,]*(e[-+]?\d+)?/gi) ?? [];
@@ -22,6 +23,7 @@ function sortable(table) {
   const headings = [...table.tHead.rows[0].cells];
   const order = [...table.tBodies[0].rows];
   headings.forEach((heading, column) => {
+    if (!heading.textContent) return;
     const button = element("button", { type: "button", class: "sort" }, ...heading.childNodes);
     heading.scope = "col";
     heading.append(button);

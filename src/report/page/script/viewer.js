@@ -36,7 +36,7 @@ function startViewer(root, data) {
   enterScene(v, v.scenes[0]);
   new ResizeObserver(() => draw(v)).observe(v.canvas);
   new MutationObserver(() => draw(v)).observe(document.documentElement, { attributeFilter: ["data-theme", "class"] });
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => draw(v));
+  for (const media of ["(prefers-color-scheme: dark)", "print"]) matchMedia(media).addEventListener("change", () => draw(v));
   document.fonts?.ready.then(() => draw(v));
 }
 
@@ -53,7 +53,9 @@ function itemsOf(data, scene) {
 }
 
 function countNotFinite({ mean: [r, g, b] }) {
-  return r.reduce((count, value, i) => count + !Number.isFinite(value + g[i] + b[i]), 0);
+  let count = 0;
+  for (let i = 0; i < r.length; i++) count += !Number.isFinite(r[i] + g[i] + b[i]);
+  return count;
 }
 
 function enterScene(v, scene) {

@@ -3,12 +3,16 @@
 // All pictures and references of the page.
 async function loadPictures() {
   const data = await unpackJson("viewer-data");
-  const raster = async (id, size) => unpackRaster(await unpack(id), size.width, size.height);
-  const rasters = (kind, list) => Promise.all(list.map((size, i) => raster(`viewer-${kind}-${i}`, size)));
-  const [pictures, references] = await Promise.all([
-    rasters("picture", data.pictures),
-    rasters("reference", data.references),
-  ]);
+  const rasters = async (kind, list) => {
+    const made = [];
+    for (const [i, { width, height }] of list.entries()) {
+      await breath();
+      made.push(unpackRaster(await unpack(`viewer-${kind}-${i}`), width, height));
+    }
+    return made;
+  };
+  const pictures = await rasters("picture", data.pictures);
+  const references = await rasters("reference", data.references);
   data.pictures.forEach((picture, i) => (picture.raster = pictures[i]));
   return { ...data, references };
 }
@@ -38,8 +42,14 @@ function unpackRaster(bytes, width, height) {
     width,
     height,
     mean: mean.map((word) => new Float32Array(word.buffer)),
-    error: codes.map((code) => Float32Array.from(code, (c) => STANDARD_ERRORS[c])),
+    error: codes.map(decoded),
   };
+}
+
+function decoded(codes) {
+  const errors = new Float32Array(codes.length);
+  for (let i = 0; i < codes.length; i++) errors[i] = STANDARD_ERRORS[codes[i]];
+  return errors;
 }
 
 // What the code of a standard error stands for.
