@@ -149,7 +149,7 @@ pub fn notes(comparison: &Comparison) -> Vec<String> {
     notes
 }
 
-/// The names of the columns of [`line`].
+/// The names of the columns of [`line()`].
 pub const COLUMNS: [&str; 6] = ["cell", "mean", "variance", "efficiency", "rays", ""];
 
 /// A line a cell.

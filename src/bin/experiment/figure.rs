@@ -54,11 +54,11 @@ fn length(text: &str) -> Result<f64, String> {
     if number > 0.0 && number.is_finite() { Ok(number * size) } else { Err("it must be positive".to_owned()) }
 }
 
-/// Sizes of text that a reader, or a drawing of it, bears [mm].
+/// Sizes of text that a reader, or a drawing of it, bears, in millimetres.
 const FONT: (f64, f64) = (1.0, 20.0);
 /// A figure is so many times as wide as its text is high, at least and at most.
 const WIDE: (f64, f64) = (15.0, 1000.0);
-/// What is higher does not fit on a page beside its caption, e.g. of ACM's proceedings [mm].
+/// What is higher does not fit on a page beside its caption, e.g. of ACM's proceedings; in millimetres.
 const HIGH: f64 = 220.0;
 
 fn column(args: &Figure) -> Result<Column, Error> {
