@@ -122,6 +122,7 @@ hold! {
     baselines: "docs/src/baselines.md",
     figures: "docs/src/figures.md",
     ci: "docs/src/ci.md",
+    json: "docs/src/json.md",
     verdicts: "docs/src/verdicts.md",
     performance: "docs/src/performance.md",
     cornell_flush: "docs/src/cornell_flush.md",
