@@ -65,7 +65,11 @@ fn pixels_are_those_of_the_files() {
             let spread = channel(name, &format!("variance.{letter}"));
             for (i, value) in channel(name, letter).into_iter().enumerate() {
                 let found = pixels[i]["mean"][c].as_f64().unwrap();
-                assert_eq!((found as f32).to_bits(), value.to_bits(), "{name} {letter} {i}: {found}, not {value}");
+                assert_eq!(
+                    (found as f32).to_bits(),
+                    value.to_bits(),
+                    "{name} {letter} {i}: {found}, not {value}"
+                );
                 assert_eq!(f64::from(found as f32), found);
                 let right = f64::from(spread[i] / samples[i]).sqrt();
                 let error = pixels[i]["std_error"][c].as_f64().unwrap();
@@ -112,7 +116,8 @@ fn the_pointer_reads_values_and_zooms_about_itself() {
     let (column, row) = at.strip_prefix("x ").and_then(|at| at.split_once(", y ")).unwrap();
     let i = row.parse::<usize>().unwrap() * SIZE + column.parse::<usize>().unwrap();
     let name = state(&page, "shown");
-    let (value, error) = read("tbody td").split_once(" ± ").map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
+    let (value, error) =
+        read("tbody td").split_once(" ± ").map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
     let number = |text: &str| text.replace('−', "-").parse::<f64>().unwrap();
     let right = f64::from(channel(&name, "R")[i]);
     assert!((number(&value) - right).abs() <= 1e-5 * right, "{value}, not {right}");
@@ -136,15 +141,13 @@ fn the_pointer_reads_values_and_zooms_about_itself() {
 fn flipping_is_quick() {
     let Some(page) = page() else { return };
     focus(&page);
-    let times = page.js(
-        "Array.from({ length: 20 }, () => {
+    let times = page.js("Array.from({ length: 20 }, () => {
            const canvas = document.querySelector('#viewer canvas');
            const start = performance.now();
            canvas.dispatchEvent(new KeyboardEvent('keydown', { key: ']', bubbles: true }));
            canvas.getContext('2d').getImageData(0, 0, 1, 1); // until it is drawn
            return performance.now() - start;
-         })",
-    );
+         })");
     let mut times: Vec<f64> = times.as_array().unwrap().iter().map(|time| time.as_f64().unwrap()).collect();
     times.sort_by(f64::total_cmp);
     println!("a flip takes {:.1} ms, at most {:.1} ms", times[10], times[19]);

@@ -49,7 +49,9 @@ fn middles(page: &Page, of: &str) -> Vec<(f64, f64)> {
 fn told(readout: &str) -> (String, f64) {
     let (place, value) = readout.rsplit_once(": ").unwrap_or_else(|| panic!("{readout:?}"));
     let value = value.split(" (").next().unwrap().replace('−', "-");
-    let digit = |c: char| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|raised| raised == c).map_or('-', |i| char::from(b'0' + i as u8));
+    let digit = |c: char| {
+        "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|raised| raised == c).map_or('-', |i| char::from(b'0' + i as u8))
+    };
     let number = match value.split_once("·10") {
         Some((factor, power)) => format!("{factor}e{}", power.chars().map(digit).collect::<String>()),
         None => value,
@@ -133,13 +135,16 @@ fn figures_are_saved_and_have_their_files() {
     let mut reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut pixels).unwrap();
-    let (white, inked) = pixels.chunks(4).fold((0, 0), |(w, i), p| if p[..3] == [255; 3] { (w + 1, i) } else { (w, i + 1) });
+    let (white, inked) =
+        pixels.chunks(4).fold((0, 0), |(w, i), p| if p[..3] == [255; 3] { (w + 1, i) } else { (w, i + 1) });
     assert!(white > inked && inked > 1000, "{white} white and {inked} other pixels");
     press("Data");
-    let rows = page.js(&format!("document.querySelectorAll(\"{PLOT} .wide tbody tr\").length")).as_u64().unwrap();
+    let rows =
+        page.js(&format!("document.querySelectorAll(\"{PLOT} .wide tbody tr\").length")).as_u64().unwrap();
     let csv = std::fs::read_to_string(REPORT.folder().join(format!("{name}.csv"))).unwrap();
     assert!(rows >= 3 && rows as usize <= csv.lines().count(), "{rows} rows");
-    let links = page.js("[...document.querySelectorAll('figure .files a')].map((a) => a.getAttribute('href'))");
+    let links =
+        page.js("[...document.querySelectorAll('figure .files a')].map((a) => a.getAttribute('href'))");
     let links = links.as_array().unwrap();
     assert_eq!(links.len(), 6);
     for link in links {

@@ -83,7 +83,12 @@ fn an_opened_row_stays_with_its_own() {
     // filtered with it as well
     page.click("input[type='search']");
     page.write("implicit");
-    assert_eq!(page.js("[...document.querySelectorAll('tr.opened')].filter((row) => row.getClientRects().length).length"), 1);
+    assert_eq!(
+        page.js(
+            "[...document.querySelectorAll('tr.opened')].filter((row) => row.getClientRects().length).length"
+        ),
+        1
+    );
 }
 
 #[test]
@@ -96,11 +101,15 @@ fn words_and_verdicts_filter() {
     assert_eq!((shown(&page), count()), (vec![7], "1 of 8 cells".to_owned()));
     "CLAMP ex".chars().for_each(|_| page.press("Backspace"));
     assert_eq!(shown(&page).len(), 8);
-    let passed: Vec<u64> = (0..8).filter(|&i| REPORT.said["cells"][i as usize]["verdict"] == "PASS").collect();
+    let passed: Vec<u64> =
+        (0..8).filter(|&i| REPORT.said["cells"][i as usize]["verdict"] == "PASS").collect();
     assert!(!passed.is_empty() && passed.len() < 8);
-    for (kind, left) in [("PASS", (0..8).filter(|i| !passed.contains(i)).collect()), ("INCONCLUSIVE", vec![])] {
+    for (kind, left) in [("PASS", (0..8).filter(|i| !passed.contains(i)).collect()), ("INCONCLUSIVE", vec![])]
+    {
         let label = "[...document.querySelectorAll('.filter label')]";
-        page.js(&format!("{label}.find((l) => l.textContent.trim() === '{kind}').querySelector('input').id = '{kind}'"));
+        page.js(&format!(
+            "{label}.find((l) => l.textContent.trim() === '{kind}').querySelector('input').id = '{kind}'"
+        ));
         page.click(&format!("#{kind}"));
         assert_eq!((shown(&page), count()), (left.clone(), format!("{} of 8 cells", left.len())), "{kind}");
     }
@@ -115,7 +124,8 @@ fn a_row_opens_to_what_the_run_has_said() {
     let text = |of: &str| page.text(&format!("document.querySelector('tr.opened {of}').textContent"));
     assert_eq!(text("h3"), said["cell"].as_str().unwrap());
     assert_eq!(text(".command pre"), said["replay"].as_str().unwrap());
-    let titles = "[...document.querySelectorAll('tr.opened figcaption')].map((title) => title.textContent).join('; ')";
+    let titles =
+        "[...document.querySelectorAll('tr.opened figcaption')].map((title) => title.textContent).join('; ')";
     let titles = page.text(titles);
     assert!(titles.contains("Bounce by bounce") && titles.contains("bets"), "{titles}");
     assert_eq!(page.js("document.querySelectorAll('tr.opened .guard .lamp').length"), 3);
@@ -143,7 +153,9 @@ fn costs_compare_with_any_baseline() {
     let Some(page) = page() else { return };
     let rows = REPORT.rows("mean", "R");
     // relative variance of a sample, per ray
-    let price = |i: usize| rows[i].number("variance") * rows[i].number("rays_per_sample") / rows[i].number("truth").powi(2);
+    let price = |i: usize| {
+        rows[i].number("variance") * rows[i].number("rays_per_sample") / rows[i].number("truth").powi(2)
+    };
     let choose = |label: &str, value: &str| {
         page.js(&format!(
             "(() => {{
@@ -154,11 +166,13 @@ fn costs_compare_with_any_baseline() {
         ));
     };
     choose("channels", "R");
-    let heads = page.text("[...document.querySelectorAll('#costs th')].map((th) => th.textContent).join('|')");
+    let heads =
+        page.text("[...document.querySelectorAll('#costs th')].map((th) => th.textContent).join('|')");
     let at = heads.split('|').position(|head| head.starts_with("relMSE, equal rays")).unwrap();
     // a cell's error, the speed-up and what is written there
     let row = |i: usize| {
-        let cell = |column: usize| format!("document.querySelectorAll('#costs tbody tr')[{i}].cells[{column}]");
+        let cell =
+            |column: usize| format!("document.querySelectorAll('#costs tbody tr')[{i}].cells[{column}]");
         let number = |column| page.js(&format!("Number({}.dataset.sort)", cell(column))).as_f64().unwrap();
         (number(at), number(at + 1), page.text(&format!("{}.textContent", cell(at + 1))))
     };
