@@ -200,3 +200,30 @@ fn sampling_calls_no_platform_mathematics() {
     }
     assert!(wrong.is_empty(), "not the same on every platform:\n{}", wrong.join("\n"));
 }
+
+#[test]
+fn scripts_of_the_page_define_every_name_once() {
+    // all of them share one scope, in which a second function would silently take the place of the first
+    let mut seen: Vec<(String, PathBuf)> = Vec::new();
+    for entry in fs::read_dir("src/report/page/script").unwrap() {
+        let path = entry.unwrap().path();
+        for line in fs::read_to_string(&path).unwrap().lines() {
+            let line = line.strip_prefix("async ").unwrap_or(line);
+            let Some(rest) = ["function ", "const ", "let "].iter().find_map(|word| line.strip_prefix(word))
+            else {
+                continue;
+            };
+            let name: String =
+                rest.chars().take_while(|c| c.is_alphanumeric() || "_$".contains(*c)).collect();
+            let other = seen.iter().find(|(known, _)| *known == name).map(|(_, other)| other);
+            assert!(
+                other.is_none(),
+                "{name} is defined in {} and in {}",
+                path.display(),
+                other.unwrap().display()
+            );
+            seen.push((name, path.clone()));
+        }
+    }
+    assert!(seen.len() > 50, "scripts are not read: {} names", seen.len());
+}

@@ -3,8 +3,7 @@
 
 mod browser;
 
-use assert_cmd::{Command, cargo::cargo_bin};
-use browser::Page;
+use browser::{Page, Report};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -25,32 +24,32 @@ estimator = ["explicit", "implicit"]
 roulette = ["throughput"]
 samples = 130
 [[grid]]
-estimator = ["implicit"]
+estimator = ["implicit", "explicit"]
 roulette = ["albedo"]
 samples = 20
 [[grid.scene]]
 [grid.scene.primitives]
-name = "NAME"
+name = 'NAME'
 primitives = [{ shape = { sphere = { center = [0, 0, 0], radius = 1, inward = true } }, albedo = 0.5, emission = 1 }]
 sensor = { camera = { origin = [0, 0, 0], direction = [0, 0, 1], up = [0, 1, 0], fov = 40, resolution = 4 } }
 "#;
 
-const HOSTILE: &str = "<script>window.hit = 1</script><img src=x onerror=hit=1>";
+const HOSTILE: &str = "\"><script>window.hit = 1</script><img src=x onerror=hit=1>";
+
+/// Opens every row of the verdict table.
+const OPEN_ALL: &str = "document.querySelectorAll('button.open').forEach((button) => button.click())";
 
 /// Seconds within which the page is awake, on a machine that does other things as well.
 const AWAKE: f64 = 5.0;
 
 /// The page of one run, shared by all tests.
-static PAGE: LazyLock<PathBuf> = LazyLock::new(|| {
-    let place = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("pages_work_in_a_browser");
-    let _ = fs::remove_dir_all(&place);
-    fs::create_dir_all(place.join("experiments")).unwrap();
-    fs::write(place.join("experiments/x.toml"), FILE.replace("NAME", HOSTILE)).unwrap();
-    let mut command = Command::new(cargo_bin!("experiment"));
-    let output = command.args(["x", "--quiet"]).current_dir(&place).output().unwrap();
-    assert!(output.status.code() < Some(2), "{}", String::from_utf8_lossy(&output.stderr));
-    place.join("reports/x/index.html")
-});
+static PAGE: LazyLock<PathBuf> =
+    LazyLock::new(|| Report::of("pages_work_in_a_browser", &FILE.replace("NAME", HOSTILE)).page);
+
+/// That over all experiments of the folder.
+fn overview() -> PathBuf {
+    PAGE.ancestors().nth(2).unwrap().join("index.html")
+}
 
 /// The page, opened and awake; `None` where there is no browser.
 fn page() -> Option<Page> {
@@ -134,7 +133,13 @@ fn the_page_opens_from_disk_and_asks_nobody() {
 #[test]
 fn names_stay_text() {
     let Some(page) = page() else { return };
-    assert!(page.text("document.body.innerText").contains(HOSTILE), "the name is not shown");
+    page.js(OPEN_ALL);
+    // in the table, above what rows open to, in their commands, over costs and in the viewer
+    let shown = "['#cells', 'tr.opened h3', 'tr.opened pre', '#costs', '#viewer'].filter((place) =>
+        [...document.querySelectorAll(place)].some((e) => e.textContent.includes(name))).join()";
+    let shown = page.text(&format!("const name = {}; {shown}", serde_json::json!(HOSTILE)));
+    assert_eq!(shown, "#cells,tr.opened h3,tr.opened pre,#costs,#viewer");
+    page.js("document.querySelectorAll('.plot .tools button').forEach((b) => b.textContent === 'Data' && b.click())");
     assert!(page.text("document.querySelector('.question').textContent").contains("<b>this</b>"));
     assert_eq!(page.text("typeof window.hit"), "undefined");
     assert_eq!(page.js("document.querySelectorAll('[onerror], [src=x], .question b').length"), 0);
@@ -146,20 +151,46 @@ fn names_stay_text() {
 #[test]
 fn the_page_fits_narrow_and_wide_screens() {
     let Some(page) = page() else { return };
-    for width in [360, 1600] {
+    page.js("document.querySelector('button.open').click()");
+    for width in [1600, 360] {
         page.resize(width, 800, 1.0);
         page.screenshot(&format!("page_{width}"));
         fits(&page, &format!("{width} pixels"));
+        // what a row opens to is no wider than what is seen of its table
+        let right = "document.querySelector('.details').getBoundingClientRect().right <= innerWidth";
+        assert!(page.js(right) == true, "an opened row is cut off at {width} pixels");
     }
 }
 
 #[test]
 fn readers_of_all_kinds_can_use_the_page() {
+    let Some(browser) = browser::shared() else { return };
+    for (name, file) in [("page", PAGE.clone()), ("overview", overview())] {
+        let page = browser.open(&file);
+        page.js("document.querySelector('button.open')?.click()");
+        for (width, scheme) in [(1280, "light"), (1280, "dark"), (360, "light"), (360, "dark")] {
+            page.resize(width, 800, 1.0);
+            page.show_as("screen", scheme);
+            page.screenshot(&format!("{name}_{scheme}_{width}"));
+            assert_eq!(page.axe(), [], "{name}, {scheme}, {width} pixels");
+        }
+    }
+}
+
+#[test]
+fn the_style_is_what_the_reader_prefers_or_chooses() {
     let Some(page) = page() else { return };
-    for scheme in ["light", "dark"] {
+    let dark = "(([r, g, b]) => r + g + b < 200)(getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number))";
+    for (scheme, is_dark) in [("light", false), ("dark", true)] {
         page.show_as("screen", scheme);
-        page.screenshot(&format!("page_{scheme}"));
-        assert_eq!(page.axe(), [], "{scheme}");
+        assert!(page.js(dark) == is_dark, "{scheme}");
+        let offered = if is_dark { "Light style" } else { "Dark style" };
+        assert_eq!(page.text("document.querySelector('button.theme').textContent"), offered);
+        page.click("button.theme");
+        assert!(page.js(dark) != is_dark, "{scheme}: the button changes nothing");
+        page.show_as("print", scheme);
+        assert!(page.js(dark) == false, "{scheme}: paper is white");
+        page.js("delete document.documentElement.dataset.theme");
     }
 }
 
@@ -174,13 +205,22 @@ fn the_page_can_be_read_without_scripts() {
     for words in ["Is <b>this</b> text?", "Of 87 questions", "PASS", "INCONCLUSIVE", HOSTILE] {
         assert!(text.contains(words), "{words} cannot be read");
     }
+    let links = page.js("[...document.querySelectorAll('a[href]')].map((a) => a.getAttribute('href')).filter((href) => !href.startsWith('#'))");
+    let links: Vec<&str> = links.as_array().unwrap().iter().map(|link| link.as_str().unwrap()).collect();
+    for kind in ["results.csv", ".exr", ".png"] {
+        assert!(links.iter().any(|link| link.ends_with(kind)), "no link to {kind} in {links:?}");
+    }
+    for link in links.iter().filter(|link| !link.contains("://")) {
+        assert!(PAGE.with_file_name(link).is_file(), "{link} is not there");
+    }
     assert_eq!(page.complaints(), [""; 0]);
 }
 
 #[test]
 fn paper_keeps_the_verdicts() {
     let Some(page) = page() else { return };
-    page.show_as("print", "light");
+    page.js("document.querySelector('button.open').click()");
+    page.show_as("print", "dark");
     // a column of an A4 page
     page.resize(720, 1000, 1.0);
     page.screenshot("page_print");
@@ -190,6 +230,16 @@ fn paper_keeps_the_verdicts() {
     }
     // a reader cannot scroll paper sideways
     let seen = "(e) => e.getClientRects().length && e.getBoundingClientRect().right <= innerWidth";
-    let verdicts = format!("[...document.querySelectorAll('table .badge')].filter({seen}).length");
-    assert_eq!(page.js(&verdicts), 6, "verdicts are cut off");
+    let verdicts = format!("[...document.querySelectorAll('tr[data-cell] .badge')].filter({seen}).length");
+    assert_eq!(
+        page.js(&verdicts),
+        page.js("document.querySelectorAll('#cells tr[data-cell]').length"),
+        "verdicts are cut off"
+    );
+    fits(&page, "paper");
+    let controls = "[...document.querySelectorAll('button, input, select')].filter((e) => e.getClientRects().length && !e.closest('.legend, th'))
+        .map((e) => e.outerHTML.slice(0, 80))";
+    assert_eq!(page.js(controls), serde_json::json!([]), "controls are printed");
+    let opened = "[...document.querySelectorAll('tr.opened svg.chart, tr.opened pre')].filter((e) => e.getClientRects().length).length";
+    assert!(page.js(opened).as_u64() >= Some(2), "what a row opens to is not printed");
 }

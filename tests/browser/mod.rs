@@ -18,8 +18,10 @@ mod axe;
 mod input;
 mod page;
 mod pipe;
+mod report;
 
 pub use page::Page;
+pub use report::Report;
 
 use pipe::{Pipe, Session};
 use serde_json::{Value, json};

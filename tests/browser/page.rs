@@ -133,7 +133,8 @@ impl Page {
     /// A file that the page offers for saving, once it is there.
     pub fn saved(&self, name: &str) -> Vec<u8> {
         let (file, end) = (self.downloads().join(name), Instant::now() + PATIENCE);
-        while !file.exists() {
+        // it has its name before it has its bytes
+        while fs::metadata(&file).map_or(0, |file| file.len()) == 0 {
             assert!(Instant::now() < end, "{name} was never saved\ncomplaints: {:?}", self.complaints());
             thread::sleep(Duration::from_millis(5));
         }

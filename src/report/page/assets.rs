@@ -5,11 +5,12 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 /// Style sheets in their order.
-const STYLES: [&str; 4] = [
+const STYLES: [&str; 5] = [
     include_str!("style/page.css"),
     include_str!("style/tables.css"),
     include_str!("style/plots.css"),
     include_str!("style/viewer.css"),
+    include_str!("style/print.css"),
 ];
 
 /// Scripts in their order; each one defines functions and nothing else, the last one calls them.
