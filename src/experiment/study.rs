@@ -98,10 +98,16 @@ pub struct Detection {
     pub found: Vec<Option<u64>>,
     /// Samples after which half of those runs that the bench caught were caught.
     pub needed: Option<u64>,
-    /// Mean over all runs.
+    /// Mean over all runs; JSON has no word for what is not a number but null.
+    #[serde(deserialize_with = "null_is_nan")]
     pub mean: [f64; 3],
     /// Exponent of the mean squared error over the samples, with its 99.9 % interval: -1 for a sound estimator.
     pub rate: Option<(f64, f64, f64)>,
+}
+
+fn null_is_nan<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<[f64; 3], D::Error> {
+    let mean = <[Option<f64>; 3]>::deserialize(deserializer)?;
+    Ok(mean.map(|mean| mean.unwrap_or(f64::NAN)))
 }
 
 impl Detection {
@@ -271,4 +277,17 @@ fn errors(plan: &Plan, cell: &Cell) -> Vec<(f64, f64)> {
     let doubled = |n: u64| (n / plan.cells[0].block).is_power_of_two();
     let snapshots = cell.history.iter().map(|snapshot| &snapshot.total[1]);
     snapshots.filter(|m| doubled(m.n)).map(|m| (m.n as f64, m.mean - right.value)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Detection;
+
+    #[test]
+    fn what_is_not_a_number_is_read_back() {
+        let text = r#"{"seeds":40,"found":[40,null],"needed":null,"mean":[null,0.5,null],"rate":null}"#;
+        let read: Detection = serde_json::from_str(text).unwrap();
+        assert!(read.mean[0].is_nan() && read.mean[1] == 0.5);
+        assert_eq!(serde_json::to_string(&read).unwrap(), text);
+    }
 }
