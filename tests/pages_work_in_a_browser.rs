@@ -181,7 +181,7 @@ fn readers_of_all_kinds_can_use_the_page() {
 fn the_style_is_what_the_reader_prefers_or_chooses() {
     let Some(page) = page() else { return };
     let dark = "(([r, g, b]) => r + g + b < 200)(getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number))";
-    for (scheme, is_dark) in [("light", false), ("dark", true)] {
+    for (scheme, is_dark) in [("dark", true), ("light", false)] {
         page.show_as("screen", scheme);
         assert!(page.js(dark) == is_dark, "{scheme}");
         let offered = if is_dark { "Light style" } else { "Dark style" };

@@ -77,7 +77,9 @@ fn the_pointer_finds_the_measured_values() {
     }
     assert!(found >= 3);
     // far from all of them nothing is told
-    page.hover(5.0, 5.0);
+    let (x, y) = middles(&page, "svg.chart")[0];
+    let half = page.js(&format!("document.querySelector(\"{PLOT} svg.chart\").clientWidth / 2 - 4"));
+    page.hover(x - half.as_f64().unwrap(), y);
     assert_eq!(readout(&page).trim(), "");
 }
 
