@@ -118,7 +118,9 @@ fn known(session: &mut Session<'_>, command: &str) {
                 "{command}"
             );
             for (option, folder) in [("--example", "examples"), ("--bench", "benches")] {
-                value(option).map(|name| exists(&format!("{folder}/{name}.rs")));
+                if let Some(name) = value(option) {
+                    exists(&format!("{folder}/{name}.rs"));
+                }
             }
             if let Some(name) = value("--test") {
                 let file = if root().join(format!("tests/{name}.rs")).exists() { ".rs" } else { "/main.rs" };
