@@ -97,7 +97,9 @@ pub fn write(
 
 fn summary(lookup: &Lookup<'_>, answer: &[String], figure: Option<String>) -> Summary {
     let finished: Vec<usize> = (0..lookup.plan.cells.len()).filter(|&c| !lookup.cell(c).is_empty()).collect();
-    let count = |verdict| finished.iter().filter(|&&cell| lookup.verdict(cell) == Some(verdict)).count();
+    // mistakes are there to be caught: the answer tells of them
+    let sound = || finished.iter().filter(|&&cell| !lookup.is_faulty(cell));
+    let count = |verdict| sound().filter(|&&cell| lookup.verdict(cell) == Some(verdict)).count();
     let verdicts = [Verdict::Invalid, Verdict::Fail, Verdict::Inconclusive, Verdict::Pass];
     Summary {
         experiment: lookup.plan.name.clone(),

@@ -19,7 +19,7 @@ pub struct Summary {
     pub answer: Vec<String>,
     /// How many cells it has.
     pub cells: usize,
-    /// How many cells have each verdict, the worst first.
+    /// How many cells without a known mistake have each verdict, the worst first.
     pub verdicts: Vec<(Verdict, usize)>,
     /// File of a figure to show.
     pub figure: Option<String>,

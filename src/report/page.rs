@@ -76,7 +76,7 @@ pub fn page(content: &Content<'_>) -> String {
             @if finished.len() < plan.cells.len() {
                 p.warn { "Interrupted: " (finished.len()) " of " (plan.cells.len()) " cells finished." }
             }
-            (verdicts::counts(&lines))
+            (verdicts::counts(lookup, &lines))
             ul { @for sentence in content.answer { li { (sentence) } } }
         }
         section #verdicts { h2 { "Verdicts" } (verdicts::verdicts(&lines)) (verdicts::claims(lookup)) }

@@ -67,17 +67,19 @@ fn invalid(share: &Share) -> Markup {
     html! { @if share.invalid > 0 { " (and " (share.invalid) " invalid)" } }
 }
 
-/// How many cells have which verdict, the worst first.
-pub fn counts(lines: &[(usize, Line)]) -> Markup {
+/// How many cells have which verdict, the worst first. Mistakes are there to be caught, and stand apart.
+pub fn counts(lookup: &Lookup<'_>, lines: &[(usize, Line)]) -> Markup {
     let kinds =
         [Some(Verdict::Invalid), Some(Verdict::Fail), Some(Verdict::Inconclusive), Some(Verdict::Pass), None];
-    let count = |kind: Option<Verdict>| lines.iter().filter(|(_, line)| line.verdict == kind).count();
+    let (tried, sound): (Vec<_>, Vec<_>) = lines.iter().partition(|(cell, _)| lookup.is_faulty(*cell));
+    let count = |kind: Option<Verdict>| sound.iter().filter(|(_, line)| line.verdict == kind).count();
     html! {
         p.counts {
             @for kind in kinds { @if count(kind) > 0 {
                 span { (badge(kind)) " " (count(kind)) @if kind.is_none() { " without a verdict" } } " "
             } }
-            "of " (lines.len()) " cells"
+            "of " (sound.len()) " cells"
+            @if !tried.is_empty() { ", beside " (tried.len()) " with a known mistake, which are to be caught" }
         }
     }
 }
