@@ -44,6 +44,7 @@ use crate::experiment::{Cell, Error, Plan, Row};
 use crate::stats::Verdict;
 use overview::Summary;
 use page::{Content, Drawn};
+use rayon::prelude::*;
 use run::Run;
 use std::io;
 use std::path::Path;
@@ -69,11 +70,10 @@ pub fn write(
     if let Some(comparison) = comparison {
         store.write("baseline.csv", &baseline::csv(comparison))?;
     }
-    let mut drawn = Vec::new();
-    for plots::Named { name, figure } in plots::figures(&lookup, cells) {
-        figure::write(&figure, &store.path().join(&name)).map_err(|e| failed(store, &e))?;
-        drawn.push(Drawn { name, figure });
-    }
+    let named = plots::figures(&lookup, cells).into_iter();
+    let drawn: Vec<Drawn> = named.map(|plots::Named { name, figure }| Drawn { name, figure }).collect();
+    let draw = |drawn: &Drawn| figure::write(&drawn.figure, &store.path().join(&drawn.name));
+    drawn.par_iter().try_for_each(draw).map_err(|e| failed(store, &e))?;
     let pictures = pictures::write(plan, cells, store, images)?;
     let answer = answer::sentences(&lookup);
     let figure = drawn.first().map(|drawn| format!("{}.svg", drawn.name));

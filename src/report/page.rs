@@ -28,6 +28,7 @@ use super::summary::{self, Line};
 use crate::experiment::baseline::Comparison;
 use crate::experiment::{Cell, Plan};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use rayon::prelude::*;
 use serde_json::json;
 
 /// A figure as the page shows it.
@@ -66,7 +67,7 @@ pub fn page(content: &Content<'_>) -> String {
     let lines: Vec<(usize, Line)> = finished.iter().map(|&c| (c, summary::line(lookup, c))).collect();
     let data = json!({
         "columns": details::columns(),
-        "cells": finished.iter().map(|&c| details::of(lookup, cells, c)).collect::<Vec<_>>(),
+        "cells": finished.par_iter().map(|&c| details::of(lookup, cells, c)).collect::<Vec<_>>(),
         "figures": figures::json(figures),
         "costs": costs::json(lookup, content.costs),
     });

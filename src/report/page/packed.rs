@@ -9,7 +9,7 @@ use std::io::Write;
 
 /// A block of bytes that the page's script `unpack(id)` gives back.
 pub fn bytes(id: &str, bytes: &[u8]) -> Markup {
-    let mut zlib = ZlibEncoder::new(Vec::new(), Compression::best());
+    let mut zlib = ZlibEncoder::new(Vec::new(), Compression::default());
     let packed = zlib.write_all(bytes).and_then(|()| zlib.finish()).expect("a Vec takes all");
     html! { script type="application/octet-stream" id=(id) { (STANDARD.encode(packed)) } }
 }
