@@ -73,7 +73,6 @@ pub fn write(
     let named = plots::figures(&lookup, cells).into_iter();
     let drawn: Vec<Drawn> = named.map(|plots::Named { name, figure }| Drawn { name, figure }).collect();
     let draw = |drawn: &Drawn| figure::write(&drawn.figure, &store.path().join(&drawn.name));
-    drawn.par_iter().try_for_each(draw).map_err(|e| failed(store, &e))?;
     let pictures = pictures::write(plan, cells, store, images)?;
     let answer = answer::sentences(&lookup);
     let figure = drawn.first().map(|drawn| format!("{}.svg", drawn.name));
@@ -92,7 +91,9 @@ pub fn write(
         run,
         comparison,
     };
-    store.write("index.html", page::page(&content).as_bytes())
+    let (written, page) = rayon::join(|| drawn.par_iter().try_for_each(draw), || page::page(&content));
+    written.map_err(|e| failed(store, &e))?;
+    store.write("index.html", page.as_bytes())
 }
 
 fn summary(lookup: &Lookup<'_>, answer: &[String], figure: Option<String>) -> Summary {
