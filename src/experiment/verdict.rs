@@ -102,12 +102,12 @@ pub fn so_far(plan: &Plan, index: usize, cell: &Cell) -> Option<Verdict> {
     let Found { rows, asked, suspicions } = found;
     let one = |Asked { claim, row, question, foreseen }: &Asked| {
         let (row, level) = (&rows[*row], level(plan, *claim));
-        let same = |d: &&Decided| (d.estimand, d.channel) == (row.estimand, row.channel);
-        let verdict = match (decide(question, level), cell.decided.iter().find(same)) {
+        let verdict = match (decide(question, level), earlier(cell, row)) {
             (Verdict::Inconclusive, Some(decided)) => decided.verdict,
-            (Verdict::Pass, _) if inexact(question, level).is_some() => Verdict::Inconclusive,
             (verdict, _) => verdict,
         };
+        let is_vague = verdict == Verdict::Pass && inexact(question, level).is_some();
+        let verdict = if is_vague { Verdict::Inconclusive } else { verdict };
         let in_vain = verdict == Verdict::Inconclusive && foreseen.is_some();
         (!in_vain).then_some((row.estimand, verdict))
     };
@@ -120,6 +120,11 @@ pub fn so_far(plan: &Plan, index: usize, cell: &Cell) -> Option<Verdict> {
     Some(worst).filter(|&worst| judged || worst != Verdict::Pass)
 }
 
+/// What was decided of a row before the cell's last sample.
+fn earlier<'a>(cell: &'a Cell, row: &Row) -> Option<&'a Decided> {
+    cell.decided.iter().find(|d| (d.estimand, d.channel) == (row.estimand, row.channel))
+}
+
 /// Asks each claim's questions as one family.
 fn answer(plan: &Plan, cells: &[Option<Cell>], rows: &mut [Row], asked: Vec<Asked>) {
     for (index, claim) in plan.spec.claim.iter().enumerate() {
@@ -130,9 +135,8 @@ fn answer(plan: &Plan, cells: &[Option<Cell>], rows: &mut [Row], asked: Vec<Aske
             let row = &mut rows[asked.row];
             row.claim = Some(index);
             take(row, answer);
-            let decided = cells[row.cell].iter().flat_map(|cell| &cell.decided);
-            let same = |d: &&Decided| (d.estimand, d.channel) == (row.estimand, row.channel);
-            if let Some(decided) = decided.filter(|_| !row.estimand.is_agreement()).find(same) {
+            let decided = cells[row.cell].as_ref().and_then(|cell| earlier(cell, row));
+            if let Some(decided) = decided.filter(|_| !row.estimand.is_agreement()) {
                 settle(row, decided);
             }
             let undecided = matches!(row.verdict, Some(Verdict::Pass | Verdict::Inconclusive));

@@ -34,7 +34,7 @@ mod ticks;
 pub use colour::Colour;
 pub use data::{Marker, Point, Series, Style};
 pub use font::{FAMILY, WOFF2};
-pub use json::{hex, json};
+pub use json::json;
 pub use print::{Column, Printed, print};
 pub use table::csv;
 

@@ -96,7 +96,7 @@ fn number(value: f64) -> Value {
 }
 
 /// "#0072b2".
-pub fn hex(colour: Colour) -> String {
+fn hex(colour: Colour) -> String {
     let (r, g, b) = colour.rgb();
     format!("#{r:02x}{g:02x}{b:02x}")
 }
