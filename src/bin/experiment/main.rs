@@ -17,6 +17,7 @@ mod render;
 mod run;
 mod schema;
 mod set;
+mod slurm;
 mod study;
 mod subject;
 
@@ -79,6 +80,7 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
         Some(Command::New(new)) => new::write(new),
         Some(Command::Schema { of }) => Ok(schema::print(*of)),
         Some(Command::Completions { shell }) => completions::print(shell),
+        Some(Command::Slurm(slurm)) => slurm::slurm(slurm, &cli.options),
         Some(Command::Export(export)) => export::export(export, &cli.options),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),
         Some(Command::Reference(reference)) => reference::reference(reference, &cli.options, stop),
