@@ -92,8 +92,45 @@ fn names_that_nothing_has() {
     refuses(&place(&[]), "anything", &["there are none in the folder experiments/"]);
 }
 
-const COMMANDS: [&str; 10] =
-    ["list", "plan", "report", "new", "render", "reference", "export", "schema", "completions", "help"];
+#[test]
+fn tasks_that_cannot_be() {
+    let place = place(&[("x", GOOD), ("wrong", "question = 1")]);
+    let cases: [(&str, &[&str]); 17] = [
+        ("slurm", &["<NAME>", "--tasks"]),
+        ("slurm x", &["--tasks <N>"]),
+        ("slurm x --tasks 0", &["invalid value '0' for '--tasks <N>'", "not in 1.."]),
+        ("slurm x --tasks 64", &["--tasks 64: there are 32 blocks", "take at most 32"]),
+        ("slurm y --tasks 2", &["no experiment called `y`"]),
+        ("slurm wrong --tasks 2", &["experiments/wrong.toml:1:12", "invalid type: integer `1`"]),
+        ("slurm x --tasks 2 --filter nowhere", &["no cell of x has `nowhere` in its label"]),
+        ("slurm x --tasks 2 --set sed=1", &["unknown field `sed`"]),
+        ("slurm x --tasks 2 --time soon", &["invalid value 'soon' for '--time <LIMIT>'", "H:M:S", "D-H"]),
+        ("slurm x --tasks 2 --time 1-2:3:4:5", &["invalid value '1-2:3:4:5'"]),
+        ("slurm x --tasks 2 --time 1", &["invalid value '1' for '--time <LIMIT>'", "two minutes at least"]),
+        ("slurm x --tasks 2 --mem 2Q", &["invalid value '2Q' for '--mem <SIZE>'", "2G"]),
+        ("slurm x --tasks 2 --partition a;b", &["invalid value 'a;b' for '--partition <NAME>'"]),
+        ("slurm x --tasks 2 --sbatch=qos", &["an option of sbatch begins with -"]),
+        ("slurm x --tasks 2 --sbatch=-a1-9", &["-a is said here already"]),
+        ("slurm x --tasks 2 --jobs 3", &["a task's threads are --cpus"]),
+        ("slurm x --tasks 2 --baseline main", &["compare the whole with a baseline", "`experiment report`"]),
+    ];
+    cases.iter().for_each(|(args, words)| refuses(&place, args, words));
+    refuses(&place, "slurm x --tasks 2 --out a\\b", &["Slurm takes no \\ "]);
+}
+
+const COMMANDS: [&str; 11] = [
+    "list",
+    "plan",
+    "report",
+    "new",
+    "render",
+    "reference",
+    "export",
+    "slurm",
+    "schema",
+    "completions",
+    "help",
+];
 
 #[test]
 fn an_experiment_named_like_a_command() {

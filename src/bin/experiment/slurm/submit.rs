@@ -9,12 +9,15 @@ use std::process::Command;
 /// Submits the job array, and what waits for its end.
 pub fn submit(job: &Job) -> Result<(), Error> {
     let array = sbatch(&job.shards(), None)?;
+    let journal = quoted(&job.journal)?;
     let merge = sbatch(&job.merge(), Some(after(&array))).map_err(|error| {
-        let by_hand = "its parts are to be joined, once they are there, by `experiment merge`";
-        Error::Refused(format!("job array {array} is submitted, and {by_hand}, but {error}"))
+        let by_hand = format!("`experiment merge {journal}` joins them in the end");
+        Error::Refused(format!(
+            "job array {array} is submitted, but not what joins its parts: {error}\n{by_hand}"
+        ))
     })?;
     println!("job array {array} runs them, job {merge} joins their parts into {}", job.report.display());
-    println!("\nsee how far they are:    experiment status {}", quoted(&job.journal)?);
+    println!("\nsee how far they are:    experiment status {journal}");
     println!("what they print:         {}", job.folder.display());
     println!("what Slurm says:         squeue --jobs={array},{merge}");
     println!("stop them:               scancel {array} {merge}");
