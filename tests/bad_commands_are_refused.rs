@@ -43,7 +43,7 @@ fn refuses(place: &TempDir, args: &str, words: &[&str]) {
 #[test]
 fn usage_errors() {
     let place = place(&[("x", GOOD)]);
-    let cases: [(&str, &[&str]); 17] = [
+    let cases: [(&str, &[&str]); 19] = [
         ("x --frob", &["unexpected argument '--frob'", "--help"]),
         ("x --sample 5", &["unexpected argument '--sample'", "'--samples'"]),
         ("x --samples", &["a value is required for '--samples <N>'"]),
@@ -55,6 +55,8 @@ fn usage_errors() {
         ("x --format xml", &["invalid value 'xml'", "text, json, mitsuba"]),
         ("plan", &["<NAMES>"]),
         ("report", &["<NAMES>"]),
+        ("merge", &["<FOLDERS>"]),
+        ("status", &["<FOLDERS>"]),
         ("render", &["<SCENE>"]),
         ("reference", &["<SCENE>"]),
         ("reference furnace --until-error 0", &["invalid value '0'", "it lies inside (0, 1)"]),
@@ -92,8 +94,20 @@ fn names_that_nothing_has() {
     refuses(&place(&[]), "anything", &["there are none in the folder experiments/"]);
 }
 
-const COMMANDS: [&str; 10] =
-    ["list", "plan", "report", "new", "render", "reference", "export", "schema", "completions", "help"];
+const COMMANDS: [&str; 12] = [
+    "list",
+    "plan",
+    "report",
+    "merge",
+    "status",
+    "new",
+    "render",
+    "reference",
+    "export",
+    "schema",
+    "completions",
+    "help",
+];
 
 #[test]
 fn an_experiment_named_like_a_command() {
