@@ -43,7 +43,7 @@ fn refuses(place: &TempDir, args: &str, words: &[&str]) {
 #[test]
 fn usage_errors() {
     let place = place(&[("x", GOOD)]);
-    let cases: [(&str, &[&str]); 17] = [
+    let cases: [(&str, &[&str]); 19] = [
         ("x --frob", &["unexpected argument '--frob'", "--help"]),
         ("x --sample 5", &["unexpected argument '--sample'", "'--samples'"]),
         ("x --samples", &["a value is required for '--samples <N>'"]),
@@ -55,6 +55,8 @@ fn usage_errors() {
         ("x --format xml", &["invalid value 'xml'", "text, json, mitsuba"]),
         ("plan", &["<NAMES>"]),
         ("report", &["<NAMES>"]),
+        ("merge", &["<FOLDERS>"]),
+        ("status", &["<FOLDERS>"]),
         ("render", &["<SCENE>"]),
         ("reference", &["<SCENE>"]),
         ("reference furnace --until-error 0", &["invalid value '0'", "it lies inside (0, 1)"]),
@@ -95,11 +97,12 @@ fn names_that_nothing_has() {
 #[test]
 fn tasks_that_cannot_be() {
     let place = place(&[("x", GOOD), ("wrong", "question = 1")]);
-    let cases: [(&str, &[&str]); 17] = [
+    let cases: [(&str, &[&str]); 18] = [
         ("slurm", &["<NAME>", "--tasks"]),
         ("slurm x", &["--tasks <N>"]),
         ("slurm x --tasks 0", &["invalid value '0' for '--tasks <N>'", "not in 1.."]),
-        ("slurm x --tasks 64", &["--tasks 64: there are 32 blocks", "take at most 32"]),
+        ("slurm x --tasks 64", &["--tasks 64: x can be divided into 32 parts at most"]),
+        ("slurm x --tasks 2 --set seeds=4", &["x is a study", "cannot be divided"]),
         ("slurm y --tasks 2", &["no experiment called `y`"]),
         ("slurm wrong --tasks 2", &["experiments/wrong.toml:1:12", "invalid type: integer `1`"]),
         ("slurm x --tasks 2 --filter nowhere", &["no cell of x has `nowhere` in its label"]),
@@ -112,16 +115,18 @@ fn tasks_that_cannot_be() {
         ("slurm x --tasks 2 --sbatch=qos", &["an option of sbatch begins with -"]),
         ("slurm x --tasks 2 --sbatch=-a1-9", &["-a is said here already"]),
         ("slurm x --tasks 2 --jobs 3", &["a task's threads are --cpus"]),
-        ("slurm x --tasks 2 --baseline main", &["compare the whole with a baseline", "`experiment report`"]),
+        ("slurm x --tasks 2 --baseline main", &["main"]),
     ];
     cases.iter().for_each(|(args, words)| refuses(&place, args, words));
     refuses(&place, "slurm x --tasks 2 --out a\\b", &["Slurm takes no \\ "]);
 }
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 13] = [
     "list",
     "plan",
     "report",
+    "merge",
+    "status",
     "new",
     "render",
     "reference",

@@ -113,7 +113,7 @@ fn finished_cells_stand_above_the_bar() {
     }
     assert!(shown.contains(" left  furnace implicit") && shown.contains("rays/s"), "{shown:?}");
     // where nobody watches, a line a cell
-    let (stdout, stderr) = into_pipes(&place, "x", &[]);
+    let (stdout, stderr) = into_pipes(&place, "x --fresh", &[]);
     let lines: Vec<&str> = stderr.lines().collect();
     assert_eq!(lines.len(), 2, "{stderr}");
     assert!(lines[0].starts_with("[1/2] furnace implicit constant q=0.7: "), "{stderr}");

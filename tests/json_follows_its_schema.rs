@@ -163,7 +163,7 @@ fn what_has_no_objects_says_so() {
         let stderr = command.assert().code(2).get_output().stderr.clone();
         let stderr = String::from_utf8(stderr).unwrap();
         assert!(
-            stderr.contains("--format json is for runs, `list`, `plan`, `report` and `figure`"),
+            stderr.contains("--format json is for runs, `list`, `plan`, `report`, `merge` and `figure`"),
             "{args}: {stderr}"
         );
     }

@@ -194,8 +194,8 @@ fn hostile_names_stay_text() {
         experiment(&place, &["x", "--quiet"]);
         let entries = |folder: &Path| fs::read_dir(folder).unwrap().count();
         assert_eq!(entries(place.path()), 2, "{name}: something lies outside");
-        // the overview of all reports beside the report
-        assert_eq!(entries(&place.path().join("reports")), 2, "{name}: something lies outside");
+        // the overview of all reports and the journal beside the report
+        assert_eq!(entries(&place.path().join("reports")), 3, "{name}: something lies outside");
         let folder = place.path().join("reports/x");
         assert!(files(&folder).keys().any(|file| file.ends_with(".exr")), "{name}: no image");
         let page = fs::read_to_string(folder.join("index.html")).unwrap();

@@ -1,9 +1,11 @@
 //! What an estimator works with: the scene, a random stream and the tally. Cost accrues here, because only here can
 //! a ray be traced.
 
+use super::pulse;
 use crate::sampling::{Address, PdfW, Stream};
 use crate::scene::{Carried, Directions, Emission, Hit, LightSampling, Ray, Rgb, Scene, Start};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Bounces 0 to 7 have a bin each; the last bin holds all later ones.
 pub const BINS: usize = 9;
@@ -12,7 +14,7 @@ pub const BINS: usize = 9;
 pub const MAX_RAYS: u64 = 1 << 26;
 
 /// What realizations have added up.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// The present path's contribution, all bounces.
     pub value: Rgb,
@@ -76,6 +78,7 @@ impl<'a> Ctx<'a> {
     /// A context for one path.
     #[inline]
     pub fn new(scene: &'a Scene, stream: Stream, tally: &'a mut Tally, start: &Start) -> Self {
+        pulse::beat();
         tally.value = Rgb::ZERO;
         let limit = tally.rays + MAX_RAYS;
         let Start { response, time, pixel, .. } = *start;
@@ -84,6 +87,7 @@ impl<'a> Ctx<'a> {
 
     /// A context for what the pixels of one realization share.
     pub fn shared(scene: &'a Scene, stream: Stream, tally: &'a mut Tally) -> Self {
+        pulse::beat();
         let limit = tally.rays + MAX_RAYS;
         Ctx { scene, stream, tally, response: 1.0, time: 0.0, pixel: 0, limit }
     }
@@ -190,6 +194,7 @@ impl<'a> Ctx<'a> {
     /// A particle that leaves a light at its own moment; `None` in the dark.
     #[inline]
     pub fn emit(&mut self) -> Option<Emission> {
+        pulse::beat();
         self.limit = self.tally.rays + MAX_RAYS;
         self.time = if self.scene.moves() { self.u1() } else { 0.0 };
         let (pick, point, direction) = (self.u1(), self.u2(), self.u2());

@@ -10,6 +10,7 @@ pub mod mis;
 pub mod particles;
 pub mod photon_map;
 pub mod photons;
+pub mod pulse;
 pub mod recursive;
 pub mod roulette;
 

@@ -1,12 +1,13 @@
 //! What one block of realizations yields: mergeable moments, never single samples.
 
-use super::ledger::{Ledger, Stream};
+use super::ledger::{LENGTHS, Ledger, Stream};
 use super::pixels::Pixels;
 use crate::estimator::Tally;
 use crate::scene::Rgb;
 use crate::stats::replicates;
-use crate::stats::tails::Tail;
+use crate::stats::tails::{KEPT, Tail};
 use crate::stats::{Bets, Moments};
+use serde::{Deserialize, Serialize};
 
 /// One set of moments a channel.
 pub type Channels = [Moments; 3];
@@ -26,6 +27,7 @@ pub(super) fn merge(channels: &mut Channels, other: &Channels) {
 }
 
 /// What one block of realizations yields.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Block {
     /// Value of a realization: a path's radiance, or the mean of an image pass.
     pub total: Channels,
@@ -35,17 +37,19 @@ pub struct Block {
     pub zeros: u64,
     /// Contributions by bounce, and what went wrong.
     pub tally: Tally,
-    /// Pixel by pixel; empty for a probe.
+    /// Variance of one sample of a pixel, averaged over the image; unused for a probe.
+    pub pixel_variance: Rgb,
+    /// Pixel by pixel; empty for a probe. Journals keep those of several blocks together.
+    #[serde(skip)]
     pub pixels: Pixels,
     /// What was won by betting, a stream each.
     pub bets: Vec<Bets>,
     /// The largest values.
     pub tails: [Tail; 3],
+    /// How many realizations took so many rays; the last bin holds all longer ones.
+    pub lengths: Vec<u64>,
     /// Of the realizations' values and rays, in their order.
     pub(super) key: u64,
-    pub(super) ledger: Ledger,
-    sum: Rgb,
-    pass: Rgb,
     /// How its mean grew.
     pub(super) trace: Trace,
 }
@@ -53,63 +57,101 @@ pub struct Block {
 /// The mean of a block's first 1, 2, 4, 8, ... realizations, and of all of them.
 pub type Trace = Vec<[f64; 3]>;
 
-impl Block {
+/// A block whose realizations are being taken.
+pub struct OpenBlock {
+    block: Block,
+    ledger: Ledger,
+    sum: Rgb,
+    pass: Rgb,
+}
+
+impl OpenBlock {
     /// An empty block for a sensor of this resolution, which bets on these streams.
     pub fn new(width: u32, height: u32, streams: &[Stream]) -> Self {
         let count = if width * height > 1 { (width * height) as usize } else { 0 };
         let empty = vec![Rgb::ZERO; count];
-        Block {
+        let block = Block {
             total: Channels::default(),
             cost: Moments::default(),
             zeros: 0,
             tally: Tally::default(),
+            pixel_variance: Rgb::ZERO,
             pixels: Pixels { width, height, n: 0, mean: empty.clone(), m2: empty },
             bets: Vec::new(),
             tails: Default::default(),
+            lengths: Vec::new(),
             key: 0,
-            ledger: Ledger::new(streams),
-            sum: Rgb::ZERO,
-            pass: Rgb::ZERO,
             trace: Trace::new(),
-        }
+        };
+        OpenBlock { block, ledger: Ledger::new(streams), sum: Rgb::ZERO, pass: Rgb::ZERO }
     }
 
     /// Takes one pixel's sample of the present realization.
     #[inline]
     pub fn pixel(&mut self, pixel: usize, value: Rgb) {
         self.pass += value;
-        if let Some(mean) = self.pixels.mean.get_mut(pixel) {
+        let pixels = &mut self.block.pixels;
+        if let Some(mean) = pixels.mean.get_mut(pixel) {
             let delta = value - *mean;
-            *mean += delta * (1.0 / (self.pixels.n + 1) as f64);
-            self.pixels.m2[pixel] += delta * (value - *mean);
+            *mean += delta * (1.0 / (pixels.n + 1) as f64);
+            pixels.m2[pixel] += delta * (value - *mean);
         }
     }
 
     /// Closes a realization that traced so many rays; `tally` is that of the block so far.
     #[inline]
     pub fn realization(&mut self, rays: u64, tally: &Tally) {
-        let pixels = f64::from(self.pixels.width) * f64::from(self.pixels.height);
+        let block = &mut self.block;
+        let pixels = f64::from(block.pixels.width) * f64::from(block.pixels.height);
         let value = self.pass / pixels;
-        self.zeros += u64::from(value == Rgb::ZERO);
-        push(&mut self.total, value);
-        self.key = replicates::chain(self.key, rays);
-        for (tail, x) in self.tails.iter_mut().zip(value.to_array()) {
+        block.zeros += u64::from(value == Rgb::ZERO);
+        push(&mut block.total, value);
+        block.key = replicates::chain(block.key, rays);
+        for (tail, x) in block.tails.iter_mut().zip(value.to_array()) {
             tail.push(x);
-            self.key = replicates::chain(self.key, x.to_bits());
+            block.key = replicates::chain(block.key, x.to_bits());
         }
-        self.cost.push(rays as f64);
+        block.cost.push(rays as f64);
         self.sum += value;
         self.ledger.realization(rays, tally, self.sum);
-        self.pixels.n += 1;
+        block.pixels.n += 1;
         self.pass = Rgb::ZERO;
-        if self.cost.n.is_power_of_two() {
+        if block.cost.n.is_power_of_two() {
             self.look();
         }
     }
 
     /// Remembers the mean so far.
     fn look(&mut self) {
-        self.trace.push((self.sum / self.cost.n as f64).to_array());
+        let mean = self.sum / self.block.cost.n as f64;
+        self.block.trace.push(mean.to_array());
+    }
+
+    /// Takes over the tally of all its paths, and is done.
+    pub fn close(mut self, tally: Tally) -> Block {
+        if !self.block.cost.n.is_power_of_two() {
+            self.look();
+        }
+        let OpenBlock { mut block, mut ledger, sum, .. } = self;
+        block.bets = ledger.close(&tally, sum);
+        block.lengths = ledger.lengths.to_vec();
+        block.tally = tally;
+        if block.pixels.is_image() {
+            let variance = block.pixels.variance();
+            block.pixel_variance = variance.iter().sum::<Rgb>() / variance.len() as f64;
+        }
+        block
+    }
+}
+
+impl Block {
+    /// Whether it has so many realizations and these bets, and all lists have their length: it may come from a file.
+    pub(super) fn fits(&self, realizations: u64, streams: &[Stream]) -> bool {
+        let counts = self.total.iter().chain([&self.cost]).map(|moments| moments.n);
+        counts.chain(self.tails.iter().map(|tail| tail.n)).all(|n| n == realizations)
+            && self.bets.iter().map(|bets| bets.stake).eq(streams.iter().map(|stream| stream.stake))
+            && self.lengths.len() == LENGTHS
+            && self.tails.iter().all(|tail| tail.largest.len() <= KEPT)
     }
 
     /// Its pixels; a probe counts as one.
@@ -119,14 +161,5 @@ impl Block {
         }
         let of = |value: fn(&Moments) -> f64| vec![Rgb::from_array(self.total.map(|m| value(&m)))];
         Pixels { mean: of(|m| m.mean), m2: of(|m| m.m2), ..self.pixels }
-    }
-
-    /// Takes over the tally of all its paths.
-    pub fn close(&mut self, tally: Tally) {
-        if !self.cost.n.is_power_of_two() {
-            self.look();
-        }
-        self.bets = self.ledger.close(&tally, self.sum);
-        self.tally = tally;
     }
 }

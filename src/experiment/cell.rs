@@ -2,9 +2,11 @@
 
 pub use super::block::{Block, Channels, Trace};
 use super::block::{merge, push};
+use super::guard::Failure;
 use super::ledger::LENGTHS;
 use super::pixels::Pixels;
 use super::row::Estimand;
+use super::unit::Unit;
 use crate::estimator::BINS;
 use crate::scene::Rgb;
 use crate::stats::replicates;
@@ -60,6 +62,9 @@ pub struct Cell {
     /// How the mean of each block grew; kept only where blocks are runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub traces: Vec<Trace>,
+    /// Why it ended before its samples were taken, if a block could not be made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<Failure>,
     /// Pixel by pixel; empty for a probe. Kept as an image, not in the store.
     #[serde(skip)]
     pub pixels: Pixels,
@@ -113,13 +118,11 @@ impl Cell {
         self.block_means = self.parts.iter().map(|part| part.map(|m| m.mean)).collect();
     }
 
-    /// Keeps how the mean of a block grew, the one merged last.
-    pub fn keep_trace(&mut self, block: &Block) {
-        self.traces.push(block.trace.clone());
-    }
-
     /// Looks at the blocks together and sums up the image, once all blocks are in.
     pub fn finish(&mut self) {
+        // where the first block failed there are none
+        self.bounces.resize(BINS, Channels::default());
+        self.lengths.resize(LENGTHS, 0);
         self.repeats = replicates::repeats(&self.keys) as u64;
         self.serial = [0, 1, 2].map(|c| {
             let means: Vec<f64> = self.parts.iter().map(|part| part[c].mean).collect();
@@ -140,8 +143,21 @@ impl Cell {
         }
     }
 
-    /// Adds the next block; blocks must come in order.
-    pub fn merge(&mut self, block: &Block) {
+    /// Adds the next blocks, which must come in order; where blocks are runs, it keeps how their means grew.
+    pub fn merge_unit(&mut self, unit: &Unit, traced: bool) {
+        for block in &unit.blocks {
+            self.merge(block, u64::from(unit.pixels.width) * u64::from(unit.pixels.height));
+            if traced {
+                self.traces.push(block.trace.clone());
+            }
+        }
+        if unit.pixels.is_image() {
+            self.pixels.merge(&unit.pixels);
+        }
+    }
+
+    /// Adds the next block of an image of so many pixels; 0 for a probe.
+    fn merge(&mut self, block: &Block, pixels: u64) {
         merge(&mut self.total, &block.total);
         self.cost.merge(&block.cost);
         let mean = |moments: &Channels| Rgb::from_array(moments.map(|m| m.mean));
@@ -150,7 +166,7 @@ impl Cell {
         self.keys.push(block.key);
         self.tails.iter_mut().zip(&block.tails).for_each(|(ours, theirs)| ours.merge(theirs));
         self.bounces.resize(BINS, Channels::default());
-        let paths = block.cost.n as f64 * f64::from(block.pixels.width) * f64::from(block.pixels.height);
+        let paths = (block.cost.n * pixels.max(1)) as f64;
         for (bounce, &sum) in self.bounces.iter_mut().zip(&block.tally.bounces) {
             push(bounce, sum / paths);
         }
@@ -159,16 +175,14 @@ impl Cell {
             false => self.bets.iter_mut().zip(&block.bets).for_each(|(ours, theirs)| ours.merge(theirs)),
         }
         self.lengths.resize(LENGTHS, 0);
-        self.lengths.iter_mut().zip(&block.ledger.lengths).for_each(|(ours, theirs)| *ours += theirs);
+        self.lengths.iter_mut().zip(&block.lengths).for_each(|(ours, theirs)| *ours += theirs);
         self.zeros += block.zeros;
         self.non_finite += block.tally.non_finite;
         self.negative += block.tally.negative;
         self.runaway += block.tally.runaway;
         self.starved += block.tally.starved;
-        if block.pixels.is_image() {
-            let variance = block.pixels.variance();
-            push(&mut self.pixel_variance, variance.iter().sum::<Rgb>() / variance.len() as f64);
-            self.pixels.merge(&block.pixels);
+        if pixels > 0 {
+            push(&mut self.pixel_variance, block.pixel_variance);
         }
         self.remember();
     }
@@ -193,6 +207,9 @@ impl Cell {
 
     /// Why nothing can be concluded from this cell, if so.
     pub fn invalid(&self) -> Option<String> {
+        if let Some(failure) = &self.failure {
+            return Some(failure.to_string());
+        }
         complaint([self.non_finite, self.negative, self.runaway, self.starved])
     }
 }

@@ -1,11 +1,11 @@
 //! Which of two cores samples a cell: the textbook, one path at a time in double precision, or the fast path.
 
-use super::block::Block;
+use super::block::{Block, OpenBlock};
 use super::error::Error;
 use super::ledger::Stream;
 use super::plan::CellPlan;
 use super::run::block_of;
-use crate::estimator::{Estimator, Tally};
+use crate::estimator::{Estimator, Tally, pulse};
 use crate::fast::{self, Fast, PathTracer};
 use crate::scene::Scene;
 use schemars::JsonSchema;
@@ -124,9 +124,10 @@ pub fn fast_block_of(
 ) -> Block {
     let (width, height) = scene.sensor.resolution();
     let pixels = width * height;
-    let mut block = Block::new(width, height, streams);
+    let mut block = OpenBlock::new(width, height, streams);
     let mut to_start = realizations.flat_map(|r| (0..pixels).map(move |pixel| (r, pixel)));
     let mut next = || {
+        pulse::beat();
         let (realization, pixel) = to_start.next()?;
         let mut stream = draw(realization, u64::from(pixel));
         let start = scene.start((pixel % width, pixel / width), &mut stream);
@@ -142,6 +143,5 @@ pub fn fast_block_of(
             (pixel, rays_before) = (0, tally.rays);
         }
     });
-    block.close(tally);
-    block
+    block.close(tally)
 }

@@ -3,7 +3,7 @@
 use super::choices::{self, Choice};
 use super::core::Core;
 use super::error::Error;
-use super::plan::{CellPlan, LeftOut};
+use super::plan::{CellPlan, LeftOut, PATIENCE};
 use super::reach;
 use super::runs;
 use super::spec::{Grid, Spec, Streams};
@@ -52,6 +52,15 @@ pub fn resolve(spec: &Spec, file: &Path, source: &str) -> Result<Resolved, Error
     Ok(resolved)
 }
 
+impl Resolved {
+    /// Notes that a parameter is swept.
+    fn sweeps(&mut self, name: &str) {
+        if !self.swept.iter().any(|swept| swept == name) {
+            self.swept.push(name.to_owned());
+        }
+    }
+}
+
 fn grid_cells(
     spec: &Spec,
     grid: &Grid,
@@ -74,10 +83,8 @@ fn grid_cells(
                 let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
                     .into_iter()
                     .flatten();
-                for &(name, _, is_swept) in params.clone() {
-                    if is_swept && !resolved.swept.iter().any(|s| s == name) {
-                        resolved.swept.push(name.to_owned());
-                    }
+                for &(name, ..) in params.clone().filter(|(.., is_swept)| *is_swept) {
+                    resolved.sweeps(name);
                 }
                 let cell = CellPlan {
                     scene: scene.choice.value.clone(),
@@ -102,6 +109,7 @@ fn grid_cells(
                     paired: spec.streams == Streams::Paired,
                     streams: Vec::new(),
                     may_stop: false,
+                    patience: PATIENCE,
                 };
                 match reach::out_of(&cell, &built) {
                     Some(why) => resolved.left_out.push(LeftOut { cell, why }),

@@ -7,7 +7,7 @@ use super::error::Error;
 use super::grid;
 use super::pixels::Pixels;
 use super::reach;
-use super::run::{WAVE_PATHS, block_of};
+use super::run::block_of;
 use crate::estimator::{Estimate, Estimator, Property};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
@@ -30,6 +30,9 @@ pub struct Goal {
     /// Realizations, rounded up to whole blocks.
     pub most: u64,
 }
+
+/// Paths between two looks at the error and the stop flag.
+const WAVE_PATHS: u64 = 1 << 18;
 
 /// Why sampling ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

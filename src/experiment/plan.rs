@@ -8,14 +8,17 @@ use super::ledger::Stream;
 use super::references::{self, NamedReference};
 use super::spec::{self, Spec};
 use super::stakes;
+use super::unit;
 use crate::estimator::{Estimate, Estimator, MAX_RAYS, Property};
 use crate::faults::{Fault, Faulty};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
 use crate::truth::Truth;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// One point of the grid.
 #[derive(Clone, Debug)]
@@ -58,6 +61,8 @@ pub struct CellPlan {
     pub streams: Vec<Stream>,
     /// Whether it may end before all samples are taken: nothing but claims about this cell alone wants them.
     pub may_stop: bool,
+    /// A walk that takes longer does not end, and makes the cell invalid.
+    pub patience: Duration,
 }
 
 impl CellPlan {
@@ -69,6 +74,16 @@ impl CellPlan {
     /// The estimator with its mistake, if it makes one.
     pub fn faulty(&self) -> Option<Faulty> {
         self.fault.map(|fault| Faulty { fault, estimator: self.estimator })
+    }
+
+    /// Its blocks.
+    pub fn blocks(&self) -> u64 {
+        self.samples / self.block
+    }
+
+    /// Blocks that are kept as one.
+    pub fn unit(&self) -> u64 {
+        unit::blocks(self)
     }
 
     /// Expected rays of the whole cell.
@@ -106,7 +121,7 @@ pub struct LeftOut {
 }
 
 /// What the command line changes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Overrides {
     /// Another seed.
     pub seed: Option<u64>,
@@ -122,7 +137,12 @@ pub struct Overrides {
     pub quick: bool,
     /// Run cells that are out of proportion.
     pub force: bool,
+    /// Seconds after which a walk is taken not to end, instead of [`PATIENCE`].
+    pub walk_seconds: Option<f64>,
 }
+
+/// A walk that takes longer than this does not end.
+pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// More rays than this in one cell are out of proportion: hours on one core.
 const MAX_CELL_RAYS: f64 = 1e11;
@@ -158,6 +178,10 @@ impl Plan {
         }
         stakes::lay(&mut plan);
         plan.allot(overrides);
+        if let Some(seconds) = overrides.walk_seconds {
+            let patience = Duration::from_secs_f64(seconds);
+            plan.cells.iter_mut().for_each(|cell| cell.patience = patience);
+        }
         if let Some(wanted) = &overrides.only {
             plan.keep_only(wanted)?;
         }

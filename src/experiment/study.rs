@@ -5,7 +5,7 @@ use super::cell::{Cell, Channels};
 use super::mistake;
 use super::plan::{CellPlan, Plan};
 use super::row::{Estimand, Row};
-use super::run::{block_of, run_cell};
+use super::run::{block_of, run_cell_here};
 use super::verdict;
 use crate::stats::binomial::clopper_pearson;
 use crate::stats::rate::{self, Rate};
@@ -172,7 +172,7 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
         verdict::is_decided(&alone, 0, cell);
         false
     };
-    let cell = run_cell(cell_plan, stop, progress, &look)?;
+    let cell = run_cell_here(cell_plan, stop, progress, &look)?;
     if stop.load(Ordering::Relaxed) {
         return None;
     }

@@ -46,8 +46,15 @@ struct Found {
     suspicions: Vec<Suspicion>,
 }
 
-/// Adds the rows of one cell, and what is asked about them.
+/// Adds the rows of one cell, and what is asked about them. Of one that failed nothing can be asked.
 fn of_cell(plan: &Plan, index: usize, cell: &Cell, found: &mut Found) {
+    if let Some(failure) = &cell.failure {
+        found.rows.extend((0..3).map(|channel| {
+            let row = Row::new(index, Estimand::Mean, Some(channel), cell.cost.n, cell.total[channel].mean);
+            Row { verdict: Some(Verdict::Invalid), note: failure.to_string(), ..row }
+        }));
+        return;
+    }
     let cell_plan = &plan.cells[index];
     let truth = plan.truth(cell_plan);
     let subject = Subject { index, plan: cell_plan, cell, truth: &truth };

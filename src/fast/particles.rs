@@ -8,7 +8,7 @@ use super::steps::Steps;
 use super::vector::{M, U, V3, WIDTH, lanes};
 use crate::estimator::particles::Particle;
 use crate::estimator::{
-    Ctx, Estimate, Estimator, Film, LightTracing, Pass, PhotonMap, Photons, Property, Tally,
+    Ctx, Estimate, Estimator, Film, LightTracing, Pass, PhotonMap, Photons, Property, Tally, pulse,
 };
 use crate::sampling::{Address, Stream};
 use crate::scene::{Ray, Rgb, Scene, Start};
@@ -81,6 +81,7 @@ impl<'a> Particles<'a> {
         loop {
             for lane in lanes(!particles.alive) {
                 let Some(number) = numbers.next() else { break };
+                pulse::beat();
                 let mut stream = address.narrow_stream(0, number);
                 let Some((ray, power)) = emit(self.steps.stage.scene, &mut stream) else { return };
                 particles.start(lane, &Start { ray, response: 1.0, time: 0.0, pixel: 0 }, &stream);

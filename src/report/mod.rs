@@ -25,7 +25,7 @@ mod page;
 mod pictures;
 pub mod plots;
 pub mod raster;
-mod replay;
+pub mod replay;
 pub mod run;
 mod shares;
 pub mod study;

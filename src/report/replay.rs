@@ -13,8 +13,13 @@ pub fn command(plan: &Plan, cell: usize) -> String {
     )
 }
 
+/// One line for a shell, which makes one block of a cell again, on one thread and without a guard.
+pub fn block(plan: &Plan, cell: usize, block: u64) -> String {
+    format!("{} --block {block}", command(plan, cell))
+}
+
 /// A word as a shell wants it: bare if it is plain, else in quotes, in which control characters are escaped.
-fn quoted(word: &str) -> String {
+pub fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._/=-".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return word.to_owned();

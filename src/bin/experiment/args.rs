@@ -13,13 +13,15 @@ pub use slurm::Slurm;
 pub use write::{Kind, New};
 
 use crate::figure::{self, Figure};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use clap_complete::ArgValueCompleter;
 use single::relative_error;
+use std::path::PathBuf;
 
 /// Runs experiments on Monte Carlo light-transport estimators: is each one right, what does it cost, where is it wrong.
 ///
-/// Exit status: 0 all claims held, 1 a claim failed or stayed inconclusive, 2 usage or input, 130 interrupted.
+/// Exit status: 0 all claims held, 1 a claim failed or stayed inconclusive, 2 usage or input, 130 or 143 stopped by Ctrl-C
+/// or a polite kill, with all that is finished kept: the same command goes on from there.
 #[derive(Parser)]
 #[command(
     name = "experiment",
@@ -60,6 +62,18 @@ pub enum Command {
         #[arg(required = true, add = ArgValueCompleter::new(complete::experiments))]
         names: Vec<String>,
     },
+    /// Puts the parts of a run together that were sampled with --shard, and reports it as if it had been run at once
+    ///
+    /// Exit status: as that of a run; 75 if blocks are missing, which are named.
+    #[command(after_help = examples::MERGE)]
+    Merge(Merge),
+    /// How far a run or its parts have come, from their journals
+    #[command(after_help = examples::STATUS)]
+    Status {
+        /// Folders with journals
+        #[arg(required = true)]
+        folders: Vec<PathBuf>,
+    },
     /// Figures for a paper, at the width of a column, as SVG, PDF and CSV, and the verdicts as a LaTeX table; samples nothing
     #[command(after_help = figure::EXAMPLES)]
     Figure(Figure),
@@ -96,6 +110,13 @@ pub enum Command {
         #[arg(value_parser = complete::shells())]
         shell: String,
     },
+}
+
+#[derive(Args)]
+pub struct Merge {
+    /// Folders with journals, all of one run
+    #[arg(required = true)]
+    pub folders: Vec<PathBuf>,
 }
 
 /// Whether an experiment of this name could not be called: the name is a command.

@@ -15,7 +15,7 @@ pub fn one(plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Erro
     if plan.spec.seeds.is_some() {
         return study::claims(plan, options, stop);
     }
-    let (cells, _) = sample(plan, options, stop)?;
+    let (cells, _) = sample(plan, None, options, stop)?;
     let rows = verdict::rows(plan, &cells);
     let interrupted = cells.iter().any(Option::is_none);
     let code = if interrupted { INTERRUPTED } else { status(plan, &rows) };

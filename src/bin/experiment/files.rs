@@ -2,7 +2,8 @@
 
 use crate::args::{Options, is_command};
 use crate::set;
-use furnace::experiment::{Error, Overrides, Plan};
+use furnace::experiment::journal::{Header, Shard};
+use furnace::experiment::{Error, Plan};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -14,8 +15,8 @@ pub struct Source {
     /// The text before the changes of `--set`.
     unchanged: String,
     changes: Vec<String>,
-    /// The folder that holds `experiments/`, or the present one.
-    root: PathBuf,
+    /// Where results go, unless the options say otherwise.
+    reports: PathBuf,
 }
 
 impl Source {
@@ -40,28 +41,47 @@ impl Source {
         }
         let unchanged = text.clone();
         let text = set::all(&file, text, &options.set)?;
-        Ok(Source { name, file, text, unchanged, changes: options.set.clone(), root: root() })
+        Ok(Source {
+            name,
+            file,
+            text,
+            unchanged,
+            changes: options.set.clone(),
+            reports: root().join("reports"),
+        })
+    }
+
+    /// The experiment of a journal that lies in `folder`; its results go beside that, unless the options say otherwise.
+    pub fn of_journal(header: &Header, folder: &Path) -> Self {
+        let known = || self::folder().map(|f| f.join(format!("{}.toml", header.name))).filter(|f| f.exists());
+        let file = Some(header.file.clone()).filter(|file| file.exists()).or_else(known);
+        let text = header.spec.clone();
+        Source {
+            name: header.name.clone(),
+            file: file.unwrap_or_else(|| header.file.clone()),
+            unchanged: text.clone(),
+            text,
+            changes: Vec::new(),
+            reports: folder.parent().unwrap_or(Path::new("")).to_owned(),
+        }
     }
 
     /// The resolved experiment.
     pub fn plan(&self, options: &Options) -> Result<Plan, Error> {
-        let overrides = Overrides {
-            seed: options.seed,
-            samples: options.samples,
-            filter: options.filter.clone(),
-            only: options.only.clone(),
-            core: options.core,
-            quick: options.quick,
-            force: options.force,
-        };
+        let overrides = &options.overrides();
         if self.text == self.unchanged {
-            return Plan::new(&self.name, &self.file, &self.text, &overrides);
+            return Plan::new(&self.name, &self.file, &self.text, overrides);
         }
-        Plan::new(&self.name, &self.file, &self.text, &overrides).map_err(|error| {
-            let of_file = Plan::new(&self.name, &self.file, &self.unchanged, &overrides).err();
+        Plan::new(&self.name, &self.file, &self.text, overrides).map_err(|error| {
+            let of_file = Plan::new(&self.name, &self.file, &self.unchanged, overrides).err();
             // a mistake of the file is told by the file's own lines
             of_file.unwrap_or_else(|| set::blame(error, &self.changes))
         })
+    }
+
+    /// What journals of a part of its plan begin with.
+    pub fn header(&self, plan: &Plan, options: &Options, shard: Shard) -> Header {
+        Header::new(plan, self.file.clone(), &self.text, options.overrides(), shard)
     }
 
     /// Where its results go.
@@ -71,7 +91,7 @@ impl Source {
 
     /// Where the results of all experiments go.
     pub fn reports(&self, options: &Options) -> PathBuf {
-        options.out.clone().unwrap_or_else(|| self.root.join("reports"))
+        options.out.clone().unwrap_or_else(|| self.reports.clone())
     }
 }
 

@@ -8,6 +8,7 @@ mod completions;
 mod export;
 mod figure;
 mod files;
+mod merge;
 mod new;
 mod plans;
 mod progress;
@@ -17,7 +18,10 @@ mod render;
 mod run;
 mod schema;
 mod set;
+mod shards;
+mod signals;
 mod slurm;
+mod status;
 mod study;
 mod subject;
 
@@ -26,9 +30,9 @@ use args::{Cli, Command, Format};
 use clap::{CommandFactory, Parser};
 use clap_complete::CompleteEnv;
 use furnace::experiment::Error;
+use signals::Signals;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// All claims held.
 const HELD: u8 = 0;
@@ -36,19 +40,21 @@ const HELD: u8 = 0;
 const NOT_HELD: u8 = 1;
 /// The input or the machine refused.
 const REFUSED: u8 = 2;
-/// Ctrl-C, with everything finished so far kept.
+/// Blocks are missing: try again when they are there.
+const INCOMPLETE: u8 = 75;
+/// Stopped by a signal, with everything finished so far kept; it ends with the signal's own status.
 const INTERRUPTED: u8 = 130;
 
 fn main() -> ExitCode {
     CompleteEnv::with_factory(Cli::command).complete();
     let cli = Cli::parse();
     colour::choose(cli.options.color);
-    let stop = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&stop);
-    if let Err(error) = ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed)) {
+    let signals = Signals::default();
+    if let Err(error) = signals.watch() {
         eprintln!("warning: Ctrl-C will lose what is finished: {error}");
     }
-    match dispatch(&cli, &stop) {
+    match dispatch(&cli, &signals.stop) {
+        Ok(INTERRUPTED) => ExitCode::from(signals.status()),
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             eprintln!("{}", colour::error(&error));
@@ -64,11 +70,17 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
     }
     let has_objects = matches!(
         cli.command,
-        None | Some(Command::List | Command::Plan { .. } | Command::Report { .. } | Command::Figure(_))
+        None | Some(
+            Command::List
+                | Command::Plan { .. }
+                | Command::Report { .. }
+                | Command::Merge(_)
+                | Command::Figure(_)
+        )
     );
     if cli.options.format == Format::Json && !has_objects && !exports {
         return Err(Error::Refused(
-            "--format json is for runs, `list`, `plan`, `report` and `figure`".to_owned(),
+            "--format json is for runs, `list`, `plan`, `report`, `merge` and `figure`".to_owned(),
         ));
     }
     match &cli.command {
@@ -76,6 +88,8 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
         Some(Command::List) => plans::list(&cli.options),
         Some(Command::Plan { names, margin }) => plans::plans(names, *margin, &cli.options),
         Some(Command::Report { names }) => run::reports(names, &cli.options),
+        Some(Command::Merge(folders)) => merge::merge(folders, &cli.options),
+        Some(Command::Status { folders }) => status::status(folders),
         Some(Command::Figure(figure)) => figure::figure(figure, &cli.options),
         Some(Command::New(new)) => new::write(new),
         Some(Command::Schema { of }) => Ok(schema::print(*of)),

@@ -3,6 +3,8 @@
 
 use anstream::{AutoStream, ColorChoice, adapter::strip_str, eprintln};
 use furnace::experiment::Plan;
+use furnace::experiment::guard::Failure;
+use furnace::report::replay;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::fmt;
 use std::io::{IsTerminal, stderr};
@@ -58,6 +60,13 @@ impl Progress {
         let line = format!("{label:<width$}  {seconds:>7.2} s  {shown}", width = self.width);
         let plain = AutoStream::choice(&stderr()) == ColorChoice::Never;
         self.bar.println(if plain { strip_str(&line).to_string() } else { line });
+    }
+
+    /// A cell failed; how to see it happen again is said besides.
+    pub fn failed(&self, plan: &Plan, cell: usize, failure: &Failure) {
+        let label = plan.label(&plan.cells[cell]);
+        let again = replay::block(plan, cell, failure.block);
+        self.bar.suspend(|| eprintln!("{label}: {failure}\n  to see it again: {again}"));
     }
 
     /// Removes the bar.

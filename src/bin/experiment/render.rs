@@ -4,6 +4,7 @@ use crate::args::{Options, Render};
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, subject};
 use anstream::{eprintln, println};
+use furnace::experiment::plan::PATIENCE;
 use furnace::experiment::{CellPlan, Error, run_cell};
 use furnace::report::images;
 use furnace::sampling::Address;
@@ -42,6 +43,7 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         paired: false,
         streams: Vec::new(),
         may_stop: false,
+        patience: PATIENCE,
         pixels: u64::from(width) * u64::from(height),
         scene,
         estimator,
@@ -50,6 +52,9 @@ pub fn render(args: &Render, options: &Options, stop: &AtomicBool) -> Result<u8,
         eprintln!("interrupted: nothing was written");
         return Ok(INTERRUPTED);
     };
+    if let Some(failure) = &cell.failure {
+        return Err(Error::Refused(format!("{}: {failure}", args.scene)));
+    }
     let truth = Truth::of(&plan.scene, &plan.estimator, &[]);
     let exr = images::exr(&cell.pixels, truth.reference());
     exr.map_err(|e| std::io::Error::other(e.to_string()))

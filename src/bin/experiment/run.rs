@@ -4,11 +4,13 @@ use crate::args::{Format, Options};
 use crate::baseline::{self, Wanted};
 use crate::files::{self, Source};
 use crate::progress::Progress;
-use crate::{HELD, INTERRUPTED, NOT_HELD, claims, provenance, study};
+use crate::{HELD, INTERRUPTED, NOT_HELD, claims, provenance, shards, study};
 use anstream::{eprintln, println};
 use furnace::experiment::baseline::Comparison;
+use furnace::experiment::cell::Block;
+use furnace::experiment::journal::{self, Journal, Shard};
 use furnace::experiment::store::{self, Store, Stored};
-use furnace::experiment::{Cell, Error, Plan, Row, mistake, run_cell, verdict};
+use furnace::experiment::{Cell, CellPlan, Error, Plan, Row, mistake, one_block, resume, run_cell, verdict};
 use furnace::report::json::{self, Content, Object};
 use furnace::report::run::Run;
 use furnace::report::{self, Lookup, answer, overview, terminal};
@@ -32,9 +34,10 @@ pub fn all(names: &[String], options: &Options, stop: &AtomicBool) -> Result<u8,
     let wanted = wanted.collect::<Result<Vec<_>, _>>()?;
     let mut worst = HELD;
     for ((source, plan), wanted) in sources.iter().zip(&plans).zip(&wanted) {
-        worst = worst.max(match options.claims {
-            true => claims::one(plan, options, stop)?,
-            false => one(source, plan, wanted, options, stop)?,
+        worst = worst.max(match (options.block, options.claims) {
+            (Some(number), _) => block(plan, number)?,
+            (None, true) => claims::one(plan, options, stop)?,
+            (None, false) => one(source, plan, wanted, options, stop)?,
         });
         if stop.load(Ordering::Relaxed) {
             break;
@@ -71,10 +74,55 @@ fn one(
         return study::one(source, plan, options, stop);
     }
     let folder = source.report_folder(options);
-    let store = Store::open(&folder)?;
-    let mut run = provenance::begin(source, plan, options);
-    let (cells, seconds) = sample(plan, options, stop)?;
-    run.seconds.clone_from(&seconds);
+    if let Some(shard) = options.shard {
+        return shards::one(source, plan, shard, options, stop);
+    }
+    Store::open(&folder)?; // fails before anything is sampled, if it must
+    let mut journal = open_journal(source, plan, Shard::WHOLE, options)?;
+    let run = provenance::begin(source, plan, options);
+    let (cells, seconds) = sample(plan, Some(&mut journal), options, stop)?;
+    let interrupted = cells.iter().any(Option::is_none);
+    let run = Run { seconds, ..run };
+    let status = publish(source, plan, Finished { cells, run, wanted }, options)?;
+    if !interrupted {
+        journal.end()?;
+    }
+    Ok(status)
+}
+
+/// Makes one block of each cell, and says what it has shown.
+fn block(plan: &Plan, number: u64) -> Result<u8, Error> {
+    for cell in &plan.cells {
+        let label = plan.label(cell);
+        if number >= cell.blocks() {
+            let most = cell.blocks() - 1;
+            return Err(Error::Refused(format!("{label}: its blocks are numbered from 0 to {most}")));
+        }
+        let Block { total, cost, .. } = one_block(cell, number);
+        println!(
+            "{label}, block {number}: mean {:?}, {} rays a realization",
+            total.map(|m| m.mean),
+            cost.mean
+        );
+    }
+    Ok(HELD)
+}
+
+/// What is to be reported.
+pub struct Finished<'a> {
+    pub cells: Vec<Option<Cell>>,
+    pub run: Run,
+    pub wanted: &'a Wanted,
+}
+
+/// Judges the cells, and reports them in the folder of the experiment; beside it, if some are missing.
+pub fn publish(
+    source: &Source,
+    plan: &Plan,
+    Finished { cells, run, wanted }: Finished<'_>,
+    options: &Options,
+) -> Result<u8, Error> {
+    let store = Store::open(&source.report_folder(options))?;
     let rows = verdict::rows(plan, &cells);
     let comparison = wanted.compare(plan, &cells, &rows);
     pool(options)?.install(|| report::write(plan, &cells, &rows, &run, &store, None, comparison.as_ref()))?;
@@ -88,7 +136,7 @@ fn one(
         cores: plan.cells.iter().map(|cell| cell.core).collect(),
         labels: plan.cells.iter().map(|cell| plan.label(cell)).collect(),
         cells,
-        seconds,
+        seconds: run.seconds,
     };
     store.write_cells(&stored)?;
     let partial = format!("{}-interrupted", source.name);
@@ -98,7 +146,7 @@ fn one(
     wanted.save(plan, &stored.cells, &rows, run.commit)?;
     if interrupted {
         eprintln!(
-            "interrupted: {finished} of {} cells are finished and kept in {}",
+            "interrupted: {finished} of {} cells are finished and kept in {}; the same command goes on from here",
             plan.cells.len(),
             folder.display()
         );
@@ -107,9 +155,23 @@ fn one(
     Ok(status(plan, &rows))
 }
 
-/// The finished cells, and the seconds of each.
+/// The journal of a part of a run, and on standard error what is to be told of it.
+pub fn open_journal(source: &Source, plan: &Plan, shard: Shard, options: &Options) -> Result<Journal, Error> {
+    let folder = journal::folder(&source.report_folder(options));
+    let journal = Journal::open(&folder, &source.header(plan, options, shard), options.start())?;
+    journal.told.iter().for_each(|told| eprintln!("warning: {told}"));
+    let kept = |(i, cell): (usize, &CellPlan)| journal.kept.count(i, cell);
+    let kept: u64 = plan.cells.iter().enumerate().map(kept).sum();
+    if kept > 0 && !options.quiet && options.format != Format::Json {
+        eprintln!("{kept} blocks are in {} already", journal.path().display());
+    }
+    Ok(journal)
+}
+
+/// The finished cells, and the seconds of each; with a journal, which is gone on from.
 pub fn sample(
     plan: &Plan,
+    mut journal: Option<&mut Journal>,
     options: &Options,
     stop: &AtomicBool,
 ) -> Result<(Vec<Option<Cell>>, Vec<f64>), Error> {
@@ -121,11 +183,16 @@ pub fn sample(
         let label = plan.label(cell_plan);
         progress.cell(&label);
         let start = Instant::now();
-        let cell = pool.install(|| {
-            let is_decided = |cell: &mut Cell| verdict::is_decided(plan, i, cell);
-            run_cell(cell_plan, stop, &|rays| progress.rays(rays), &is_decided)
-        });
-        seconds.push(start.elapsed().as_secs_f64());
+        let rays = |rays| progress.rays(rays);
+        let is_decided = |cell: &mut Cell| verdict::is_decided(plan, i, cell);
+        let cell = pool.install(|| match journal.as_deref_mut() {
+            Some(journal) => resume::go_on(cell_plan, i, journal, stop, &rays, &is_decided),
+            None => Ok(run_cell(cell_plan, stop, &rays, &is_decided)),
+        })?;
+        seconds.push(journal.as_ref().map_or(start.elapsed().as_secs_f64(), |journal| journal.seconds[i]));
+        if let Some(failure) = cell.as_ref().and_then(|cell| cell.failure.as_ref()) {
+            progress.failed(plan, i, failure);
+        }
         if let Some(cell) = cell.as_ref().filter(|_| !progress.is_silent()) {
             let verdict = verdict::so_far(plan, i, cell);
             let shown = verdict.map_or_else(
@@ -137,6 +204,9 @@ pub fn sample(
         cells.push(cell);
     }
     progress.finish();
+    if let Some(journal) = journal {
+        journal.flush()?;
+    }
     Ok((cells, seconds))
 }
 

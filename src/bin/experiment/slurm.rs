@@ -2,10 +2,9 @@
 
 mod submit;
 
-use crate::HELD;
 use crate::args::{Options, Slurm};
-use crate::baseline::Names;
 use crate::files::Source;
+use crate::{HELD, baseline};
 use anstream::println;
 use furnace::experiment::plan::RAYS_PER_SECOND;
 use furnace::experiment::{Error, Plan};
@@ -37,14 +36,10 @@ pub fn slurm(args: &Slurm, options: &Options) -> Result<u8, Error> {
     if options.jobs != 0 {
         return Err(Error::Refused("a task's threads are --cpus".to_owned()));
     }
-    let Names { save_baseline, baseline } = &options.baselines;
-    if save_baseline.is_some() || baseline.is_some() {
-        let why = "compare the whole with a baseline, once it is there: `experiment report`";
-        return Err(Error::Refused(why.to_owned()));
-    }
     let source = Source::read(&args.name, options)?;
     let plan = source.plan(options)?;
-    enough(&plan, args.tasks)?;
+    baseline::wanted(&source, &plan, options)?;
+    divisible(&plan, args.tasks)?;
     let reports = source.reports(options);
     let of = |ending: &str| reports.join(format!("{}.{ending}", source.name));
     let job = Job { folder: of("slurm"), journal: of("journal"), report: reports.join(&source.name) };
@@ -64,14 +59,19 @@ pub fn slurm(args: &Slurm, options: &Options) -> Result<u8, Error> {
     Ok(HELD)
 }
 
-/// Refuses tasks that would have nothing to do.
-fn enough(plan: &Plan, tasks: u64) -> Result<(), Error> {
-    let blocks: u64 = plan.cells.iter().map(|cell| cell.runs * cell.samples.div_ceil(cell.block)).sum();
-    if tasks <= blocks {
-        return Ok(());
+/// Refuses what cannot be divided among so many tasks.
+fn divisible(plan: &Plan, tasks: u64) -> Result<(), Error> {
+    if plan.spec.seeds.is_some() {
+        let why = "is a study, whose runs are not kept in journals: it cannot be divided";
+        return Err(Error::Refused(format!("{} {why}", plan.name)));
     }
-    let why = format!("there are {blocks} blocks of samples to be shared out");
-    Err(Error::Refused(format!("--tasks {tasks}: {why}; take at most {blocks}")))
+    // blocks of images are kept together
+    let parts: u64 = plan.cells.iter().map(|cell| cell.blocks().div_ceil(cell.unit())).sum();
+    if tasks > parts {
+        let why = format!("{} can be divided into {parts} parts at most", plan.name);
+        return Err(Error::Refused(format!("--tasks {tasks}: {why}")));
+    }
+    Ok(())
 }
 
 /// The job array and what joins its parts.
@@ -82,6 +82,7 @@ fn scripts(source: &Source, job: &Job, args: &Slurm, options: &Options) -> Resul
     let out = absolute(&source.reports(options))?;
     let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '.';
     let name: String = source.name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+    let (run, report) = carried(options)?;
     let (tasks, cpus, directives) = (args.tasks, args.cpus, directives(args));
     let shards = format!(
         include_str!("slurm/shards.sbatch"),
@@ -94,7 +95,8 @@ fn scripts(source: &Source, job: &Job, args: &Slurm, options: &Options) -> Resul
         here = quoted(&here)?,
         program = quoted(&program)?,
         file = quoted(&absolute(&source.file)?)?,
-        options = carried(options, &out)?,
+        out = quoted(&out)?,
+        options = run,
     );
     let merge = format!(
         include_str!("slurm/merge.sbatch"),
@@ -106,6 +108,7 @@ fn scripts(source: &Source, job: &Job, args: &Slurm, options: &Options) -> Resul
         program = quoted(&program)?,
         journal = quoted(&absolute(&job.journal)?)?,
         out = quoted(&out)?,
+        options = report,
     );
     Ok((shards, merge))
 }
@@ -122,23 +125,52 @@ fn directives(args: &Slurm) -> String {
     named.chain(args.sbatch.iter().cloned()).map(|option| format!("#SBATCH {option}\n")).collect()
 }
 
-/// What changes the run, as it is to be typed.
-fn carried(options: &Options, out: &Path) -> Result<String, Error> {
-    let Options { seed, samples, core, filter, only, set, quick, force, .. } = options;
-    let out = out.to_str().map(str::to_owned);
-    let valued = [
-        ("out", out),
+/// What changes the run, and what its report is to be compared with, as they are to be typed.
+fn carried(options: &Options) -> Result<(String, String), Error> {
+    // all of them are named, so that a new one is thought of; the last ones change no run, or are said elsewhere
+    let Options {
+        seed,
+        samples,
+        core,
+        filter,
+        only,
+        set,
+        walk_seconds,
+        quick,
+        force,
+        baselines,
+        out: _,
+        jobs: _,
+        format: _,
+        color: _,
+        quiet: _,
+        all: _,
+        claims: _,
+        resume: _,
+        fresh: _,
+        shard: _,
+        block: _,
+    } = options;
+    let run = [
         ("seed", seed.map(|seed| seed.to_string())),
         ("samples", samples.map(|samples| samples.to_string())),
         ("core", core.map(|core| core.name().to_owned())),
         ("filter", filter.clone()),
         ("only", only.clone()),
+        ("walk-seconds", walk_seconds.map(|seconds| seconds.to_string())),
     ];
-    let valued = valued.into_iter().chain(set.iter().map(|change| ("set", Some(change.clone()))));
-    let valued = valued.filter_map(|(name, value)| Some(format!("--{name}={}", value?)));
+    let run = run.into_iter().chain(set.iter().map(|change| ("set", Some(change.clone()))));
+    let report =
+        [("baseline", baselines.baseline.clone()), ("save-baseline", baselines.save_baseline.clone())];
     let flags = [("--quick", quick), ("--force", force)].into_iter().filter(|(_, is_set)| **is_set);
-    let words = valued.chain(flags.map(|(name, _)| name.to_owned()));
-    words.map(|word| Ok(format!(" {}", quote(&word)?))).collect()
+    let flags: String = flags.map(|(flag, _)| format!(" {flag}")).collect();
+    Ok((words(run)? + &flags, words(report)?))
+}
+
+/// Options with a value, each a word of its own behind a space.
+fn words(options: impl IntoIterator<Item = (&'static str, Option<String>)>) -> Result<String, Error> {
+    let written = options.into_iter().filter_map(|(name, value)| Some(format!("--{name}={}", value?)));
+    written.map(|word| Ok(format!(" {}", quote(&word)?))).collect()
 }
 
 /// A path as it is to be typed, wherever that is.

@@ -5,6 +5,8 @@ Examples:
   experiment rr_sweep
   experiment rr_sweep --quick
   experiment rr_sweep --filter \"furnace implicit\" --samples 65536
+  experiment rr_sweep --shard 1/2 --out parts
+  experiment rr_sweep --shard 2/2 --out parts
   experiment rr_sweep --set seed=7 --set grid.0.samples=65536
   experiment --all --claims --format json";
 
@@ -21,6 +23,14 @@ Examples:
 pub const REPORT: &str = "\
 Examples:
   experiment report rr_sweep";
+
+pub const MERGE: &str = "\
+Examples:
+  experiment merge parts/rr_sweep.journal";
+
+pub const STATUS: &str = "\
+Examples:
+  experiment status parts/rr_sweep.journal";
 
 pub const NEW: &str = "\
 Examples:

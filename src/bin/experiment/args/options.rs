@@ -3,7 +3,8 @@
 use crate::baseline::Names;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ColorChoice, ValueEnum};
-use furnace::experiment::Core;
+use furnace::experiment::journal::{Shard, Start};
+use furnace::experiment::{Core, Overrides};
 use std::path::PathBuf;
 
 #[derive(Args, Clone, Default)]
@@ -55,9 +56,56 @@ pub struct Options {
     /// No progress, only results
     #[arg(short, long, global = true)]
     pub quiet: bool,
-    /// Run cells that are out of proportion
+    /// Run cells that are out of proportion, or take more memory than there is
     #[arg(long, global = true)]
     pub force: bool,
+    /// Seconds after which a walk is taken not to end, which makes its cell invalid; 60 unless said
+    #[arg(long, value_name = "S", global = true, value_parser = seconds)]
+    pub walk_seconds: Option<f64>,
+    /// Go on from the journal of an earlier run; there must be one. Without this it is gone on from where it is of the same
+    /// run
+    #[arg(long, conflicts_with = "fresh")]
+    pub resume: bool,
+    /// Start over, whatever the journal of an earlier run holds
+    #[arg(long)]
+    pub fresh: bool,
+    /// Only this part of the run, such as 3/16, and no report: `merge` makes it of all parts
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["claims", "baseline", "save_baseline"])]
+    pub shard: Option<Shard>,
+    /// Only this block of each cell, from 0, on one thread: shows what went wrong in it. Writes nothing
+    #[arg(long, value_name = "N", conflicts_with_all = ["shard", "claims", "resume", "fresh"])]
+    pub block: Option<u64>,
+}
+
+impl Options {
+    /// What they change of a plan.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            seed: self.seed,
+            samples: self.samples,
+            filter: self.filter.clone(),
+            only: self.only.clone(),
+            core: self.core,
+            quick: self.quick,
+            force: self.force,
+            walk_seconds: self.walk_seconds,
+        }
+    }
+
+    /// What becomes of a journal that is there.
+    pub fn start(&self) -> Start {
+        match (self.resume, self.fresh) {
+            (true, _) => Start::Resume,
+            (_, true) => Start::Fresh,
+            _ => Start::Either,
+        }
+    }
+}
+
+/// A time that can be waited for.
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|s: &f64| (0.001..=1e9).contains(s));
+    seconds.ok_or_else(|| "a number of seconds from 0.001 to 1e9".to_owned())
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]

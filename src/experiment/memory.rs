@@ -1,0 +1,71 @@
+//! What a cell takes of the memory, foreseen before it is sampled, and how much there is.
+
+use super::plan::CellPlan;
+use crate::estimator::Estimator;
+use crate::scene::Rgb;
+use std::fs;
+use std::path::Path;
+
+/// Mean and spread of a pixel.
+const PIXEL: f64 = 2.0 * size_of::<Rgb>() as f64;
+
+/// A block of a probe without its bets.
+const BLOCK: f64 = 4096.0;
+
+/// A stream of bets: its tables, and their sums.
+const STREAM: f64 = 1024.0;
+
+/// A photon in its map, with its place in the tree: each particle that is sent lands a few times.
+const PARTICLE: f64 = 400.0;
+
+/// What a finished block leaves in its cell.
+const LEFT: f64 = 256.0;
+
+/// Blocks that wait to be merged may take so much, where two threads' are not more than that.
+const WAITING: f64 = 268_435_456.0;
+
+/// Most blocks that wait to be merged.
+const MOST: f64 = 256.0;
+
+/// Bytes of one block.
+fn block(cell: &CellPlan) -> f64 {
+    let image = if cell.pixels > 1 { PIXEL * cell.pixels as f64 } else { 0.0 };
+    BLOCK + image + STREAM * cell.streams.len() as f64
+}
+
+/// Blocks that may be begun and not merged: two a thread at least, so that none waits for the one that merges.
+pub fn window(cell: &CellPlan, threads: usize) -> usize {
+    let fit = (WAITING / block(cell)).min(MOST);
+    (fit as usize).max(2 * threads)
+}
+
+/// About how many bytes a cell takes at most while it is sampled by so many threads; the program itself is not counted.
+pub fn foreseen(cell: &CellPlan, threads: usize) -> f64 {
+    let waiting = window(cell, threads).min(cell.blocks() as usize) as f64 * block(cell);
+    let image = if cell.pixels > 1 { PIXEL * cell.pixels as f64 } else { 0.0 };
+    // the merged image, a unit of it, its bytes, and the variance of its pixels
+    let merged = 4.0 * image + LEFT * cell.blocks() as f64;
+    let maps = match &cell.estimator {
+        Estimator::PhotonMap(map) => threads as f64 * PARTICLE * map.photons as f64,
+        _ => 0.0,
+    };
+    waiting + merged + maps
+}
+
+/// Bytes that this process may still take, as Linux tells: what is free, within the limit of its control group.
+pub fn available() -> Option<f64> {
+    let free = fs::read_to_string("/proc/meminfo").ok().and_then(|text| {
+        let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+        Some(1024.0 * line.split_whitespace().next()?.parse::<f64>().ok()?)
+    });
+    [free, group("memory.max", "memory.current")].into_iter().flatten().reduce(f64::min)
+}
+
+/// What a control group leaves of its limit.
+fn group(limit: &str, taken: &str) -> Option<f64> {
+    let own = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let own = own.lines().find_map(|line| line.strip_prefix("0::/"))?.to_owned();
+    let folder = Path::new("/sys/fs/cgroup").join(own);
+    let read = |name: &str| fs::read_to_string(folder.join(name)).ok()?.trim().parse::<f64>().ok();
+    Some(read(limit)? - read(taken)?)
+}
