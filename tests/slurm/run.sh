@@ -37,13 +37,10 @@ task() { scontrol -o show job "${array}_$1" | grep -oP "(?<= $2=)\S*"; }
 is() { [ "$(task "$1" "$2")" = "$3" ]; }
 log() { cat "$reports/parts.slurm/$1.log" 2>/dev/null; }
 journal() { echo "$reports/parts.journal/$1-of-8.journal"; }
-# journal_has N BYTES: more than so many
-journal_has() { [ "$(stat -c %s "$(journal "$1")" 2>/dev/null || echo 0)" -gt "$2" ]; }
-is_under_way() { is "$1" JobState RUNNING && journal_has "$1" "${2:-$beginning}"; }
-# bytes after which a journal holds a block for sure
-beginning=${BEGINNING:-100}
+# journal_has N LINES: more than so many; the first one is no block
+journal_has() { [ "$(wc -l 2>/dev/null <"$(journal "$1")" || echo 0)" -gt "$2" ]; }
+is_under_way() { is "$1" JobState RUNNING && journal_has "$1" 2; }
 is_up() { [[ "$(sinfo -h -n "$1" -p work -o %T)" =~ ^(idle|mixed|allocated)$ ]]; }
-complete="320 of"; incomplete="^([0-9]|[1-9][0-9]|[12][0-9][0-9]) of"
 
 # The process that runs a task's part.
 program_of() {
@@ -61,10 +58,8 @@ catch() {
 
 # What was noted is still there, and more.
 went_on() {
-  local noted
-  noted=$(stat -c %s "$root/$1.noted")
-  cmp -s -n "$noted" "$root/$1.noted" "$(journal "$1")" || fail "task $1 did not keep what it had"
-  journal_has "$1" "$noted" || fail "task $1 did not go on"
+  cmp -s -n "$(stat -c %s "$root/$1.noted")" "$root/$1.noted" "$(journal "$1")" || fail "task $1 did not keep what it had"
+  journal_has "$1" "$(wc -l <"$root/$1.noted")" || fail "task $1 did not go on"
 }
 
 comes_back() {
@@ -90,13 +85,14 @@ merged() {
   see "the merge ends $found: $(tail -n 1 "$reports/parts.slurm/merge.log")"
 }
 
-# progress PATTERN: what `status` says
-progress() {
+# Percent of all that are there, as `status` says.
+percent() {
   local said
   said=$("$program" status "$reports/parts.journal" 2>&1)
-  grep -qE "$1" <<<"$said" || fail "status does not say $1: $said"
-  see "status: $(head -n 1 <<<"$said")"
+  see "status: $(tail -n 1 <<<"$said")" >&2
+  tail -n 1 <<<"$said" | grep -oP '[0-9.]+(?= %)'
 }
+is_partial() { awk -v p="${1:-none}" 'BEGIN { exit !(p ~ /^[0-9.]+$/ && p < 100) }'; }
 
 mkdir -p "$work/experiments"
 cp "$here/parts.toml" "$work/experiments"
@@ -107,7 +103,8 @@ see "a cluster is up: $(sinfo -h -o '%n %T' | paste -sd,)"
 submit
 
 catch 1
-progress "$incomplete"
+before=$(percent)
+is_partial "$before" || fail "status says $before % while tasks run"
 kill -KILL "$(program_of 1)"
 comes_back 1 "was killed"
 catch 2
@@ -138,12 +135,13 @@ for n in 1 2 3 4 6; do went_on "$n"; done
 is 5 JobState CANCELLED && is 5 Restarts 0 || fail "task 5 does not stay cancelled"
 for n in 7 8; do is "$n" Restarts 0 || fail "task $n was started again for nothing"; done
 see "all tasks but the cancelled one are complete, and have gone on from where they were"
-progress "$incomplete"
+after=$(percent)
+is_partial "$after" && [ "$after" != "$before" ] || fail "status says $after %, and said $before %"
 
 submit
 merged COMPLETED 0:0
 went_on 5
-progress "$complete"
+[ "$(percent)" = 100.0 ] || fail "status does not say that all is there"
 cmp "$work/alone/parts/results.csv" "$reports/parts/results.csv" || fail "the parts do not make the whole"
 see "results.csv is that of the whole run, byte for byte"
 
