@@ -32,16 +32,19 @@ node_dies() {
   rm -f "$root/$1.pid"
 }
 
-# What a node's jobs have started, and Slurm's process above each of them.
+# Slurm's processes that watch over a node's jobs, and what those have started.
 processes_on() {
-  local environ pid parent
-  for environ in /proc/[0-9]*/environ; do
-    [ "$(tr '\0' '\n' 2>/dev/null <"$environ" | grep -cxE "SLURM_CONF=$SLURM_CONF|SLURMD_NODENAME=$1")" = 2 ] || continue
-    pid=${environ//[^0-9]/}
-    parent=$(ps -o ppid= -p "$pid") && [ "$(ps -o comm= -p $parent)" = slurmstepd ] && echo $parent
-    echo "$pid"
-  done 2>/dev/null
+  local watcher script
+  for watcher in $(pgrep -x slurmstepd); do
+    has "$watcher" "SLURM_CONF=$SLURM_CONF" || continue
+    for script in $(pgrep -P "$watcher"); do
+      has "$script" "SLURMD_NODENAME=$1" && echo "$watcher" "$script" $(pgrep -P "$script")
+    done
+  done
 }
+
+# has PROCESS VARIABLE=VALUE
+has() { grep -qzFx "$2" "/proc/$1/environ" 2>/dev/null; }
 
 # Ends all of it, jobs included, whatever state it is in.
 cluster_down() {

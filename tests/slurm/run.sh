@@ -43,12 +43,7 @@ is_under_way() { is "$1" JobState RUNNING && journal_has "$1" 2; }
 is_up() { [[ "$(sinfo -h -n "$1" -p work -o %T)" =~ ^(idle|mixed|allocated)$ ]]; }
 
 # The process that runs a task's part.
-program_of() {
-  local pid
-  for pid in $(processes_on w1; processes_on w2); do
-    [ "$(readlink "/proc/$pid/exe")" = "$program" ] && tr '\0' '\n' <"/proc/$pid/cmdline" | grep -qx "$1/8" && echo "$pid"
-  done
-}
+program_of() { pgrep -f -- "^$program .*--shard $1/8 .*$root/"; }
 
 # Waits until a task has written something, and notes what.
 catch() {
@@ -99,7 +94,7 @@ cp "$here/parts.toml" "$work/experiments"
 (cd "$work" && "$program" parts --quiet --out alone >/dev/null) || fail "the experiment itself fails"
 see "run as a whole"
 cluster_up "$root" || fail "no cluster"
-see "a cluster is up: $(sinfo -h -o '%n %T' | paste -sd,)"
+see "a cluster is up: $(sinfo -h -p work -o '%N %T')"
 submit
 
 catch 1
