@@ -99,7 +99,8 @@ fn scripts_do_what_the_command_does() {
     ];
     let whole = place.experiment(&[&changes[..], &["--quiet", "--out", "alone"]].concat());
     assert!(matches!(whole.status.code(), Some(0 | 1)), "{}", text(&whole));
-    let written = place.experiment(&[&["slurm"], &changes[..], &["--tasks", "3"]].concat());
+    let told = ["--tasks", "3", "--save-baseline", "main"];
+    let written = place.experiment(&[&["slurm"], &changes[..], &told].concat());
     assert!(written.status.success(), "{}", text(&written));
     for number in 1..=3 {
         let task = place.task(number, 0).output().unwrap();
@@ -111,6 +112,7 @@ fn scripts_do_what_the_command_does() {
     let results = |folder: &str| fs::read_to_string(place.work.join(folder).join("x y/results.csv")).unwrap();
     assert_eq!(results("reports"), results("alone"));
     assert!(!results("alone").contains("explicit") && results("alone").contains(",7"), "nothing is changed");
+    assert!(place.work.join("reports/.baselines/main/x y.json").is_file(), "the baseline is not kept");
     assert_eq!(place.calls(), "", "Slurm is asked though all went well");
 }
 
