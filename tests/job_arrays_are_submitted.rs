@@ -117,6 +117,23 @@ fn scripts_do_what_the_command_does() {
 }
 
 #[test]
+fn journals_of_another_run_are_told_before_anything_is_submitted() {
+    let place = Place::new();
+    let run = place.experiment(&["x y", "--shard", "1/4", "--seed", "3"]);
+    assert!(run.status.success(), "{}", text(&run));
+    let refused = place.experiment(&["slurm", "x y", "--tasks", "4", "--submit"]);
+    assert_eq!(refused.status.code(), Some(2));
+    for words in ["1-of-4.journal is of another run: the seed is 3 there", "--out"] {
+        assert!(text(&refused).contains(words), "{words}: {}", text(&refused));
+    }
+    for (tasks, samples, status) in [("4", "4096", 0), ("8", "4096", 0), ("4", "4160", 0), ("8", "4160", 2)] {
+        let args = ["slurm", "x y", "--seed", "3", "--tasks", tasks, "--samples", samples];
+        let again = place.experiment(&args);
+        assert_eq!(again.status.code(), Some(status), "{args:?}: {}", text(&again));
+    }
+}
+
+#[test]
 fn scripts_say_what_slurm_must_know() {
     let place = Place::new();
     let options = "--tasks 6 --at-once 2 --cpus 4 --mem 2G --time 1-12 --partition long,short --account us \

@@ -6,6 +6,7 @@ use crate::args::{Options, Slurm};
 use crate::files::Source;
 use crate::{HELD, baseline};
 use anstream::println;
+use furnace::experiment::journal::{self, Header, Shard};
 use furnace::experiment::plan::RAYS_PER_SECOND;
 use furnace::experiment::{Error, Plan};
 use std::fs;
@@ -43,6 +44,7 @@ pub fn slurm(args: &Slurm, options: &Options) -> Result<u8, Error> {
     let reports = source.reports(options);
     let of = |ending: &str| reports.join(format!("{}.{ending}", source.name));
     let job = Job { folder: of("slurm"), journal: of("journal"), report: reports.join(&source.name) };
+    unmixed(&job, &source.header(&plan, options, Shard::WHOLE), args.tasks)?;
     let (shards, merge) = scripts(&source, &job, args, options)?;
     fs::create_dir_all(&job.folder).map_err(|e| Error::io("cannot create", &job.folder, e))?;
     for (path, text) in [(job.shards(), shards), (job.merge(), merge)] {
@@ -70,6 +72,25 @@ fn divisible(plan: &Plan, tasks: u64) -> Result<(), Error> {
     if tasks > parts {
         let why = format!("{} can be divided into {parts} parts at most", plan.name);
         return Err(Error::Refused(format!("--tasks {tasks}: {why}")));
+    }
+    Ok(())
+}
+
+/// Refuses a folder with journals of another run, which tasks or the merge would refuse in the end.
+fn unmixed(job: &Job, ours: &Header, tasks: u64) -> Result<(), Error> {
+    let Ok(paths) = journal::all(&job.journal) else { return Ok(()) }; // there are none yet
+    for path in paths {
+        let theirs = journal::scan(&path)?.header;
+        // a part of this division takes over the samples that are asked for now
+        let samples = |header: &Header| header.cells.iter().map(|cell| cell.samples).collect::<Vec<_>>();
+        let differ = theirs.shard.count != tasks && samples(&theirs) != samples(ours);
+        let difference =
+            ours.difference(&theirs).or_else(|| differ.then(|| "it has other numbers of samples".to_owned()));
+        if let Some(difference) = difference {
+            let what = "remove it, or take another folder with --out";
+            let path = path.display();
+            return Err(Error::Refused(format!("{path} is of another run: {difference}; {what}")));
+        }
     }
     Ok(())
 }
