@@ -80,12 +80,15 @@ fn divisible(plan: &Plan, tasks: u64) -> Result<(), Error> {
 fn unmixed(job: &Job, ours: &Header, tasks: u64) -> Result<(), Error> {
     let Ok(paths) = journal::all(&job.journal) else { return Ok(()) }; // there are none yet
     for path in paths {
-        let theirs = journal::scan(&path)?.header;
-        // a part of this division takes over the samples that are asked for now
+        let scan = journal::scan(&path)?;
+        let (theirs, is_task) = (&scan.header, scan.header.shard.count == tasks);
+        if is_task && scan.ended {
+            continue; // the task replaces it, if it is of another run
+        }
         let samples = |header: &Header| header.cells.iter().map(|cell| cell.samples).collect::<Vec<_>>();
-        let differ = theirs.shard.count != tasks && samples(&theirs) != samples(ours);
+        let differ = !is_task && samples(theirs) != samples(ours);
         let difference =
-            ours.difference(&theirs).or_else(|| differ.then(|| "it has other numbers of samples".to_owned()));
+            ours.difference(theirs).or_else(|| differ.then(|| "it has other numbers of samples".to_owned()));
         if let Some(difference) = difference {
             let what = "remove it, or take another folder with --out";
             let path = path.display();

@@ -54,8 +54,8 @@ Examples:
 
 pub const SLURM: &str = "\
 Examples:
-  experiment slurm rr_sweep --tasks 16
-  experiment slurm rr_sweep --tasks 16 --at-once 4 --time 4:00:00 --mem 2G --sbatch=--qos=long
+  experiment slurm rr_sweep --tasks 16 --out parts
+  experiment slurm rr_sweep --tasks 16 --out parts --at-once 4 --time 4:00:00 --mem 2G --sbatch=--qos=long
 
 With --submit, both scripts are handed to sbatch at once; else what is printed does that.";
 
