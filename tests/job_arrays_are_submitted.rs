@@ -44,7 +44,10 @@ impl Place {
     fn plays(&self, name: &str, does: &str) -> PathBuf {
         let calls = self.root.path().join("calls");
         let path = self.root.path().join("bin").join(name);
-        let text = format!("#!/bin/bash\nprintf '%s\\n' {name} \"$@\" >>'{}'\n{does}\n", calls.display());
+        let text = format!(
+            "#!/bin/bash\ncalls='{}'\nprintf '%s\\n' {name} \"$@\" >>\"$calls\"\n{does}\n",
+            calls.display()
+        );
         fs::write(&path, text).unwrap();
         fs::set_permissions(&path, Permissions::from_mode(0o755)).unwrap();
         path
@@ -189,7 +192,7 @@ fn ends(does: &str, state: &str, restarts: u32, terminated: bool) -> (Option<i32
     let task = place.task(2, restarts).spawn().unwrap();
     if terminated {
         let start = Instant::now();
-        while !place.calls().contains("program\n") && start.elapsed() < Duration::from_secs(20) {
+        while !place.calls().contains("ready\n") && start.elapsed() < Duration::from_secs(20) {
             std::thread::sleep(Duration::from_millis(100));
         }
         Command::new("kill").arg(task.id().to_string()).status().unwrap();
@@ -223,7 +226,9 @@ fn what_can_go_on_is_started_again() {
 #[test]
 fn a_task_whose_time_is_over_writes_down_what_it_has_and_comes_back() {
     let stops = |status: u32| {
-        format!("trap 'sleep 0.3; exit {status}' TERM; for i in {{1..100}}; do sleep 0.1; done")
+        format!(
+            "trap 'sleep 0.3; exit {status}' TERM; echo ready >>\"$calls\"; for i in {{1..100}}; do sleep 0.1; done"
+        )
     };
     for (does, state, restarts, status, again) in [
         (stops(143), "RUNNING", 9, 75, true),
