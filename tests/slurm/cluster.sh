@@ -35,11 +35,18 @@ node_dies() {
 # Slurm's processes that watch over a node's jobs, and what those have started.
 processes_on() {
   local watcher script
-  for watcher in $(pgrep -x slurmstepd); do
-    has "$watcher" "SLURM_CONF=$SLURM_CONF" || continue
+  for watcher in $(watchers); do
     for script in $(pgrep -P "$watcher"); do
       has "$script" "SLURMD_NODENAME=$1" && echo "$watcher" "$script" $(pgrep -P "$script")
     done
+  done
+}
+
+# Slurm's process above each job of this cluster; a job that has just ended leaves one for a while.
+watchers() {
+  local watcher
+  for watcher in $(pgrep -x slurmstepd); do
+    has "$watcher" "SLURM_CONF=$SLURM_CONF" && echo "$watcher"
   done
 }
 
@@ -49,7 +56,7 @@ has() { grep -qzFx "$2" "/proc/$1/environ" 2>/dev/null; }
 # Ends all of it, jobs included, whatever state it is in.
 cluster_down() {
   local root=$1 file pids
-  pids=$(cat "$root"/{w1,w2,slurmctld,munged}.pid; processes_on w1; processes_on w2) 2>/dev/null
+  pids=$(cat "$root"/{w1,w2,slurmctld,munged}.pid; watchers; processes_on w1; processes_on w2) 2>/dev/null
   kill -KILL $pids 2>/dev/null
 }
 
