@@ -109,6 +109,7 @@ fn grid_cells(
                     paired: spec.streams == Streams::Paired,
                     streams: Vec::new(),
                     may_stop: false,
+                    studied: false,
                     patience: PATIENCE,
                 };
                 match reach::out_of(&cell, &built) {

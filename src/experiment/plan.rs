@@ -1,6 +1,7 @@
 //! The resolved experiment: every cell with its samples and what it will cost.
 
 use super::about;
+use super::cell::Keep;
 use super::core::Core;
 use super::error::Error;
 use super::grid;
@@ -61,6 +62,8 @@ pub struct CellPlan {
     pub streams: Vec<Stream>,
     /// Whether it may end before all samples are taken: nothing but claims about this cell alone wants them.
     pub may_stop: bool,
+    /// Whether it is a run of a study.
+    pub studied: bool,
     /// A walk that takes longer does not end, and makes the cell invalid.
     pub patience: Duration,
 }
@@ -79,6 +82,11 @@ impl CellPlan {
     /// Its blocks.
     pub fn blocks(&self) -> u64 {
         self.samples / self.block
+    }
+
+    /// What is kept of each block.
+    pub fn keep(&self) -> Keep {
+        Keep { traces: self.traced, parts: self.studied }
     }
 
     /// Blocks that are kept as one.

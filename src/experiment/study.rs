@@ -165,6 +165,7 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
     let mut cell_plan = plan.cells[index].clone();
     cell_plan.address = cell_plan.address.repetition(seed);
     cell_plan.may_stop = true;
+    cell_plan.studied = true;
     let alone = Plan { cells: vec![cell_plan], whole: None, ..plan.clone() };
     let cell_plan = &alone.cells[0];
     // looked at on the way, to learn when it was caught, but run to the end: other rules know no early end
