@@ -126,7 +126,7 @@ fn failed(store: &Store, error: &dyn std::error::Error) -> Error {
 /// Indices of the cells that have an image.
 fn with_images<'a>(plan: &'a Plan, cells: &'a [Option<Cell>]) -> impl Iterator<Item = (usize, &'a Cell)> {
     let cells = cells.iter().enumerate().filter_map(|(i, cell)| Some((i, cell.as_ref()?)));
-    cells.filter(|&(i, _)| plan.cells[i].pixels > 1)
+    cells.filter(|&(i, cell)| plan.cells[i].pixels > 1 && cell.failure.is_none())
 }
 
 /// A cell's file name; with its number where another cell's label differs only in what file names cannot hold.

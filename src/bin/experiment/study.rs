@@ -34,6 +34,10 @@ const STUDY: &str = "study.json";
 
 /// Runs a study.
 pub fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    if options.shard.is_some() || options.resume {
+        let why = "is a study: it has no journal to go on from, and is not cut into shards";
+        return Err(Error::Refused(format!("{} {why}", source.name)));
+    }
     let store = Store::open(&source.report_folder(options))?;
     let mut run = provenance::begin(source, plan, options);
     let (outcome, timing, seconds) = sample(plan, options, stop)?;

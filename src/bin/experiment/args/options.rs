@@ -92,6 +92,14 @@ impl Options {
         }
     }
 
+    /// The threads that there will be.
+    pub fn threads(&self) -> usize {
+        match self.jobs {
+            0 => std::thread::available_parallelism().map_or(1, usize::from),
+            jobs => jobs.into(),
+        }
+    }
+
     /// What becomes of a journal that is there.
     pub fn start(&self) -> Start {
         match (self.resume, self.fresh) {
