@@ -4,6 +4,7 @@
 
 use super::cell::{self, Block};
 use super::error::Error;
+use super::file;
 use super::grid;
 use super::pixels::Pixels;
 use super::reach;
@@ -67,7 +68,7 @@ pub fn resume(path: &Path, wanted: Own) -> Result<Own, Error> {
     if !path.exists() {
         return Ok(wanted);
     }
-    let bytes = fs::read(path).map_err(|e| Error::io("cannot read", path, e))?;
+    let bytes = file::bytes(path, file::STORED).map_err(|e| Error::io("cannot read", path, e))?;
     let refused = |why: String| {
         Error::Refused(format!("{} cannot be continued: {why}; choose another -o", path.display()))
     };

@@ -2,11 +2,11 @@
 
 use super::cell::TILES;
 use super::error::Error;
+use super::file;
 use super::plan::CellPlan;
 use super::spec::{ReferenceSpec, Spec};
 use crate::scene::library::SceneKind;
 use crate::truth::{BadReference, Reference};
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -64,7 +64,8 @@ fn scene_of<'a>(written: &ReferenceSpec, cells: &'a [CellPlan]) -> Result<&'a Sc
 fn read(written: &ReferenceSpec, scene: &SceneKind, folder: &Path) -> Result<Reference, String> {
     let path = folder.join(written.file.get_ref());
     let bad = |why: String| format!("{} is no reference: {why}", path.display());
-    let bytes = fs::read(&path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let bytes =
+        file::bytes(&path, file::STORED).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
     let mut reference = Reference::read(&bytes).map_err(|e| bad(e.to_string()))?;
     let (width, height) = scene.build().sensor.resolution();
     if width != height {

@@ -3,6 +3,7 @@
 use super::cell::Cell;
 use super::core::Core;
 use super::error::Error;
+use super::file;
 use super::plan::Plan;
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -101,8 +102,13 @@ impl Store {
 /// The cells stored in `folder`, if they belong to `plan`, which learns the seed, samples and blocks of their run.
 pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
     let path = folder.join(CELLS);
-    let text = fs::read_to_string(&path).map_err(|e| Error::io("cannot read", &path, e))?;
-    let stored: Stored = serde_json::from_str(&text)
+    let text = file::bytes(&path, file::STORED).map_err(|e| Error::io("cannot read", &path, e))?;
+    read(&path, &text, plan)
+}
+
+/// As [`load`], from the bytes of the file `path`.
+pub fn read(path: &Path, text: &[u8], plan: &mut Plan) -> Result<Stored, Error> {
+    let stored: Stored = serde_json::from_slice(text)
         .map_err(|e| Error::Refused(format!("{} is damaged: {e}", path.display())))?;
     let whole = stored.cells.iter().flatten().all(Cell::is_whole);
     if !whole || stored.samples.len() != stored.cells.len() {
