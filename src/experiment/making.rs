@@ -54,7 +54,7 @@ pub fn begin(scene: &SceneKind, estimator: &Estimator, seed: u64) -> Result<Own,
         let why = "a reference is made by an unbiased estimator: without a clamp, and not by photon density";
         return Err(Error::Refused(why.to_owned()));
     }
-    if !reach::finds_all(estimator, &built) {
+    if !reach::finds_all(estimator, &built, || reach::sees_smooth(&built)) {
         let why = "this estimator misses light from the scene's points, so it makes no reference";
         return Err(Error::Refused(why.to_owned()));
     }
@@ -75,6 +75,9 @@ pub fn resume(path: &Path, wanted: Own) -> Result<Own, Error> {
     let stored = Own::read(&bytes).map_err(|e| refused(e.to_string()))?;
     match stored.provenance.difference(&wanted.provenance) {
         Some(difference) => Err(refused(format!("it was made for {difference}"))),
+        None if stored.size != wanted.size => {
+            Err(refused(format!("it has {} pixels along each edge, not {}", stored.size, wanted.size)))
+        }
         None => Ok(stored),
     }
 }

@@ -33,10 +33,18 @@ impl Summary {
     ///
     /// # Errors
     ///
-    /// When it is damaged.
+    /// When it is damaged, or its figure is not in its folder.
     pub fn parse(file: &Path, text: &[u8]) -> Result<Self, Error> {
         let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", file.display()));
-        serde_json::from_slice(text).map_err(damaged)
+        let summary: Self = serde_json::from_slice(text).map_err(damaged)?;
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        match summary.figure.as_ref().filter(|figure| !figure.chars().all(is_plain)) {
+            Some(figure) => Err(Error::Refused(format!(
+                "{} is damaged: `{figure}` is no name of a figure in its folder",
+                file.display()
+            ))),
+            None => Ok(summary),
+        }
     }
 
     /// The text of the file.

@@ -53,6 +53,7 @@ impl Source {
             core: options.core,
             quick: options.quick,
             force: options.force,
+            allow_outside: options.allow_outside,
         };
         if self.text == self.unchanged {
             return Plan::new(&self.name, &self.file, &self.text, &overrides);

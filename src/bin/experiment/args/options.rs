@@ -58,6 +58,9 @@ pub struct Options {
     /// Run cells that are out of proportion
     #[arg(long, global = true)]
     pub force: bool,
+    /// Read references also from outside the folder of the experiment file's project
+    #[arg(long, global = true)]
+    pub allow_outside: bool,
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
