@@ -86,10 +86,15 @@ fn a_failed_cell_is_invalid_and_the_others_are_not() {
         for &(cell, block) in &failing {
             let Failure { block: told, why } = cells[cell].as_ref().unwrap().failure.clone().unwrap();
             assert_eq!(told, block);
-            assert!(why.starts_with("it panicked: the <b>light</b> went out, at tests/failed_cells"), "{why}");
+            assert!(
+                why.starts_with("it panicked: the <b>light</b> went out, at tests/failed_cells"),
+                "{why}"
+            );
             let of_cell: Vec<&Row> = rows.iter().filter(|row| row.cell == cell).collect();
             assert!(!of_cell.is_empty() && of_cell.iter().all(|r| r.verdict == Some(Verdict::Invalid)));
-            assert!(of_cell.iter().any(|row| row.note.contains(&format!("block {block} failed: it panicked"))));
+            assert!(
+                of_cell.iter().any(|row| row.note.contains(&format!("block {block} failed: it panicked")))
+            );
         }
         // what is compared with a cell that failed cannot be judged
         let apart = |row: &&Row| !row.estimand.is_agreement() && failing.iter().all(|(c, _)| *c != row.cell);

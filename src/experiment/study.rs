@@ -166,7 +166,8 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
     cell_plan.address = cell_plan.address.repetition(seed);
     cell_plan.may_stop = true;
     cell_plan.studied = true;
-    let alone = Plan { cells: vec![cell_plan], whole: None, ..plan.clone() };
+    let mut alone = Plan { cells: vec![cell_plan], ..plan.clone() };
+    alone.count_questions();
     let cell_plan = &alone.cells[0];
     // looked at on the way, to learn when it was caught, but run to the end: other rules know no early end
     let look = |cell: &mut Cell| {

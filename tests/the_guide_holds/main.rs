@@ -123,6 +123,7 @@ hold! {
     figures: "docs/src/figures.md",
     ci: "docs/src/ci.md",
     json: "docs/src/json.md",
+    input: "docs/src/input.md",
     verdicts: "docs/src/verdicts.md",
     performance: "docs/src/performance.md",
     cornell_flush: "docs/src/cornell_flush.md",
