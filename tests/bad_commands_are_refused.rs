@@ -94,7 +94,34 @@ fn names_that_nothing_has() {
     refuses(&place(&[]), "anything", &["there are none in the folder experiments/"]);
 }
 
-const COMMANDS: [&str; 12] = [
+#[test]
+fn tasks_that_cannot_be() {
+    let place = place(&[("x", GOOD), ("wrong", "question = 1")]);
+    let cases: [(&str, &[&str]); 18] = [
+        ("slurm", &["<NAME>", "--tasks"]),
+        ("slurm x", &["--tasks <N>"]),
+        ("slurm x --tasks 0", &["invalid value '0' for '--tasks <N>'", "not in 1.."]),
+        ("slurm x --tasks 64", &["--tasks 64: x can be divided into 32 parts at most"]),
+        ("slurm x --tasks 2 --set seeds=4", &["x is a study", "cannot be divided"]),
+        ("slurm y --tasks 2", &["no experiment called `y`"]),
+        ("slurm wrong --tasks 2", &["experiments/wrong.toml:1:12", "invalid type: integer `1`"]),
+        ("slurm x --tasks 2 --filter nowhere", &["no cell of x has `nowhere` in its label"]),
+        ("slurm x --tasks 2 --set sed=1", &["unknown field `sed`"]),
+        ("slurm x --tasks 2 --time soon", &["invalid value 'soon' for '--time <LIMIT>'", "H:M:S", "D-H"]),
+        ("slurm x --tasks 2 --time 1-2:3:4:5", &["invalid value '1-2:3:4:5'"]),
+        ("slurm x --tasks 2 --time 1", &["invalid value '1' for '--time <LIMIT>'", "two minutes at least"]),
+        ("slurm x --tasks 2 --mem 2Q", &["invalid value '2Q' for '--mem <SIZE>'", "2G"]),
+        ("slurm x --tasks 2 --partition a;b", &["invalid value 'a;b' for '--partition <NAME>'"]),
+        ("slurm x --tasks 2 --sbatch=qos", &["an option of sbatch begins with -"]),
+        ("slurm x --tasks 2 --sbatch=-a1-9", &["-a is said here already"]),
+        ("slurm x --tasks 2 --jobs 3", &["a task's threads are --cpus"]),
+        ("slurm x --tasks 2 --baseline main", &["main"]),
+    ];
+    cases.iter().for_each(|(args, words)| refuses(&place, args, words));
+    refuses(&place, "slurm x --tasks 2 --out a\\b", &["Slurm takes no \\ "]);
+}
+
+const COMMANDS: [&str; 13] = [
     "list",
     "plan",
     "report",
@@ -104,6 +131,7 @@ const COMMANDS: [&str; 12] = [
     "render",
     "reference",
     "export",
+    "slurm",
     "schema",
     "completions",
     "help",

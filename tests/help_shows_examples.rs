@@ -52,7 +52,7 @@ fn every_command_has_some_and_they_work() {
     let commands = commands();
     assert_eq!(
         commands.join(" "),
-        "list plan report merge status figure new render reference export schema completions",
+        "list plan report merge status figure new render reference export slurm schema completions",
         "a command without a test"
     );
     let place = tempfile::tempdir().unwrap();

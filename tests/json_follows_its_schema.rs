@@ -150,7 +150,14 @@ fn the_schema_can_refuse() {
 #[test]
 fn what_has_no_objects_says_so() {
     let place = place();
-    for args in ["render cornell_box", "reference furnace", "new x", "completions bash", "schema"] {
+    for args in [
+        "render cornell_box",
+        "reference furnace",
+        "new x",
+        "slurm x --tasks 2",
+        "completions bash",
+        "schema",
+    ] {
         let mut command = Command::new(cargo_bin!("experiment"));
         let command = command.args(args.split(' ')).args(["--format", "json"]).current_dir(place.path());
         let stderr = command.assert().code(2).get_output().stderr.clone();

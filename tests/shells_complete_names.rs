@@ -30,7 +30,7 @@ fn offered(place: &TempDir, words: &[&str]) -> Vec<String> {
 fn names_are_offered() {
     let place = place();
     assert_eq!(offered(&place, &["rr"]), ["rr_other", "rr_sweep"]);
-    for command in ["plan", "report"] {
+    for command in ["plan", "report", "slurm"] {
         assert_eq!(offered(&place, &[command, "ex"]), ["explosion"], "{command}");
     }
     assert_eq!(offered(&place, &["rep"]), ["report"]);

@@ -122,6 +122,7 @@ hold! {
     baselines: "docs/src/baselines.md",
     figures: "docs/src/figures.md",
     ci: "docs/src/ci.md",
+    cluster: "docs/src/cluster.md",
     json: "docs/src/json.md",
     input: "docs/src/input.md",
     verdicts: "docs/src/verdicts.md",

@@ -4,10 +4,12 @@ mod complete;
 mod examples;
 mod options;
 mod single;
+mod slurm;
 mod write;
 
 pub use options::{Format, Options};
 pub use single::{Export, Reference, Render};
+pub use slurm::Slurm;
 pub use write::{Kind, New};
 
 use crate::figure::{self, Figure};
@@ -91,6 +93,9 @@ pub enum Command {
     /// Writes a scene for another renderer
     #[command(after_help = examples::EXPORT)]
     Export(Export),
+    /// Writes a job array for a Slurm cluster, and the job that joins its parts into the report; samples nothing here
+    #[command(after_help = examples::SLURM)]
+    Slurm(Slurm),
     /// Prints the JSON schema of experiment files, by which editors complete and check them, or of --format json
     #[command(after_help = examples::SCHEMA)]
     Schema {

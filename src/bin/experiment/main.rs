@@ -22,6 +22,7 @@ mod schema;
 mod set;
 mod shards;
 mod signals;
+mod slurm;
 mod status;
 mod study;
 mod subject;
@@ -95,6 +96,7 @@ fn dispatch(cli: &Cli, stop: &AtomicBool) -> Result<u8, Error> {
         Some(Command::New(new)) => new::write(new),
         Some(Command::Schema { of }) => Ok(schema::print(*of)),
         Some(Command::Completions { shell }) => completions::print(shell),
+        Some(Command::Slurm(slurm)) => slurm::slurm(slurm, &cli.options),
         Some(Command::Export(export)) => export::export(export, &cli.options),
         Some(Command::Render(render)) => render::render(render, &cli.options, stop),
         Some(Command::Reference(reference)) => reference::reference(reference, &cli.options, stop),

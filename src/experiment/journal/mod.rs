@@ -11,7 +11,7 @@ mod line;
 mod scan;
 mod write;
 
-pub use header::Header;
+pub use header::{Header, OfCell};
 pub use kept::{Found, Kept, Overlap, expected};
 pub use line::Line;
 pub use scan::{Damage, Scan, scan, scan_all};

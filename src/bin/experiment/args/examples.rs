@@ -52,6 +52,13 @@ Examples:
   experiment export furnace
   experiment export cornell_box --format mitsuba -o box.xml";
 
+pub const SLURM: &str = "\
+Examples:
+  experiment slurm rr_sweep --tasks 16 --out parts
+  experiment slurm rr_sweep --tasks 16 --out parts --at-once 4 --time 4:00:00 --mem 2G --sbatch=--qos=long
+
+With --submit, both scripts are handed to sbatch at once; else what is printed does that.";
+
 pub const SCHEMA: &str = "\
 Examples:
   experiment schema
