@@ -1,6 +1,8 @@
 //! A user's own estimator, tested in a furnace: two wrong ways of writing Russian roulette, and the right one.
 //! Run it with `cargo run --example my_estimator`.
 
+#![forbid(unsafe_code)]
+
 use furnace::estimator::{Ctx, Estimate, Property};
 use furnace::experiment::sample;
 use furnace::sampling::Address;

@@ -5,6 +5,8 @@
 //! Prints one line: CPU seconds of the sampling alone (Linux; 0 elsewhere), paths, rays, instruction set. FILE takes six
 //! little-endian doubles a pixel, row by row: the mean of its samples and their variance, by channel.
 
+#![forbid(unsafe_code)]
+
 use furnace::estimator::{
     Ctx, DirectLight, Estimate, Estimator, Explicit, Gather, Heuristic, Implicit, Kernel, Last, PhotonMap,
     Roulette, Rule, Tally, Technique,

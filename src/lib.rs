@@ -39,7 +39,7 @@
 //! | study, instrument | cells run with many seeds; what looks for mistakes there |
 //! | cost, efficiency | rays a realization; 1 / (variance x cost) |
 
-#![deny(unsafe_code)]
+#![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
 pub mod sampling;

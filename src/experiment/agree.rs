@@ -16,6 +16,9 @@ pub(super) fn compare(plan: &Plan, cells: &[Option<Cell>], rows: &mut Vec<Row>, 
             let anchor = plan.cells.iter().position(|other| same_scene(other) && is_anchor(other));
             let Some(anchor) = anchor.filter(|&a| a != index && cell_plan.is_unbiased()) else { continue };
             let (Some(cell), Some(anchor)) = (&cells[index], &cells[anchor]) else { continue };
+            if cell.failure.is_some() {
+                continue; // its own row says so
+            }
             let invalid = cell.invalid().or_else(|| anchor.invalid());
             for channel in 0..3 {
                 let margin = margin * anchor.blocks[channel].mean.abs();

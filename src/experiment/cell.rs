@@ -73,7 +73,19 @@ pub struct Cell {
     keys: Vec<u64>,
     /// Value of a realization, in each block; known while sampling.
     #[serde(skip)]
+    means: Vec<[f64; 3]>,
+    /// The same with all moments, for the rules of other tools; kept only in studies.
+    #[serde(skip)]
     pub parts: Vec<Channels>,
+}
+
+/// What is kept of each block beside its mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Keep {
+    /// How its mean grew: blocks are runs.
+    pub traces: bool,
+    /// All moments of its value: other tools' rules want them.
+    pub parts: bool,
 }
 
 /// What a cell had seen after some of its blocks.
@@ -115,7 +127,7 @@ pub struct Measured {
 impl Cell {
     /// Keeps the means of blocks, for comparisons with a cell that has the same random numbers.
     pub fn keep_block_means(&mut self) {
-        self.block_means = self.parts.iter().map(|part| part.map(|m| m.mean)).collect();
+        self.block_means.clone_from(&self.means);
     }
 
     /// Looks at the blocks together and sums up the image, once all blocks are in.
@@ -125,7 +137,7 @@ impl Cell {
         self.lengths.resize(LENGTHS, 0);
         self.repeats = replicates::repeats(&self.keys) as u64;
         self.serial = [0, 1, 2].map(|c| {
-            let means: Vec<f64> = self.parts.iter().map(|part| part[c].mean).collect();
+            let means: Vec<f64> = self.means.iter().map(|means| means[c]).collect();
             replicates::lag_correlation(&means)
         });
         let pixels = &self.pixels;
@@ -143,12 +155,15 @@ impl Cell {
         }
     }
 
-    /// Adds the next blocks, which must come in order; where blocks are runs, it keeps how their means grew.
-    pub fn merge_unit(&mut self, unit: &Unit, traced: bool) {
+    /// Adds the next blocks, which must come in order.
+    pub fn merge_unit(&mut self, unit: &Unit, keep: Keep) {
         for block in &unit.blocks {
             self.merge(block, u64::from(unit.pixels.width) * u64::from(unit.pixels.height));
-            if traced {
+            if keep.traces {
                 self.traces.push(block.trace.clone());
+            }
+            if keep.parts {
+                self.parts.push(block.total);
             }
         }
         if unit.pixels.is_image() {
@@ -162,7 +177,7 @@ impl Cell {
         self.cost.merge(&block.cost);
         let mean = |moments: &Channels| Rgb::from_array(moments.map(|m| m.mean));
         push(&mut self.blocks, mean(&block.total));
-        self.parts.push(block.total);
+        self.means.push(block.total.map(|m| m.mean));
         self.keys.push(block.key);
         self.tails.iter_mut().zip(&block.tails).for_each(|(ours, theirs)| ours.merge(theirs));
         self.bounces.resize(BINS, Channels::default());

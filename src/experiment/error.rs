@@ -1,5 +1,6 @@
 //! What can be wrong with a user's input or with the machine's answer to it: one sentence each, exit status 2.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ pub enum Error {
         known: Vec<String>,
     },
     /// Anything else that the user asked for and cannot have.
-    #[error("{0}")]
+    #[error("{}", shortened(.0))]
     Refused(String),
 }
 
@@ -54,28 +55,32 @@ pub struct Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let gutter = " ".repeat(self.line.to_string().len());
-        let indent: String =
-            self.text.chars().take(self.column - 1).map(|c| if c == '\t' { c } else { ' ' }).collect();
-        writeln!(f, "{}", self.message)?;
+        let (text, column) = window(&self.text, self.column);
+        let indent: String = text.chars().take(column - 1).map(|c| if c == '\t' { c } else { ' ' }).collect();
+        let length = self.length.clamp(1, SHOWN);
+        writeln!(f, "{}", shortened(&self.message))?;
         writeln!(f, "{gutter}--> {}:{}:{}", self.file.display(), self.line, self.column)?;
         writeln!(f, "{gutter} |")?;
-        writeln!(f, "{} | {}", self.line, self.text)?;
-        write!(f, "{gutter} | {indent}{}", "^".repeat(self.length.max(1)))
+        writeln!(f, "{} | {text}", self.line)?;
+        write!(f, "{gutter} | {indent}{}", "^".repeat(length))
     }
 }
 
 impl Error {
     /// An error at the bytes `span` of `source`, the text of `file`.
     pub fn at(file: &Path, source: &str, span: Range<usize>, message: impl Into<String>) -> Self {
-        let start = span.start.min(source.len());
+        let boundary = |at: usize| (0..=at.min(source.len())).rev().find(|&at| source.is_char_boundary(at));
+        let start = boundary(span.start).unwrap_or(0);
         let line_start = source[..start].rfind('\n').map_or(0, |i| i + 1);
         let line_end = source[start..].find('\n').map_or(source.len(), |i| start + i);
+        let text = source[line_start..line_end].trim_end();
+        let end = boundary(span.end).unwrap_or(0).min(line_start + text.len()).max(start);
         Error::Input(Place {
             file: file.to_owned(),
             line: source[..start].matches('\n').count() + 1,
             column: source[line_start..start].chars().count() + 1,
-            text: source[line_start..line_end].trim_end().to_owned(),
-            length: source[start..span.end.clamp(start, line_end)].chars().count(),
+            text: text.to_owned(),
+            length: source[start..end].chars().count(),
             message: message.into(),
         })
     }
@@ -111,7 +116,38 @@ fn suggestion(name: &str, known: &[String]) -> String {
     }
 }
 
+/// Characters of a line that are shown at most.
+const SHOWN: usize = 160;
+
+/// Characters of a message: what it quotes may be of any length.
+const MESSAGE: usize = 4000;
+
+/// A message without its end, if it is too long to be read.
+fn shortened(message: &str) -> Cow<'_, str> {
+    match message.char_indices().nth(MESSAGE) {
+        Some((end, _)) => format!("{} ... (and more)", &message[..end]).into(),
+        None => message.into(),
+    }
+}
+
+/// The part of a long line that surrounds the column, and the column within it.
+fn window(text: &str, column: usize) -> (Cow<'_, str>, usize) {
+    if text.chars().nth(SHOWN).is_none() {
+        return (text.into(), column);
+    }
+    let before = (column - 1).min(SHOWN / 4);
+    let from = column - 1 - before;
+    (text.chars().skip(from).take(SHOWN).collect(), before + 1)
+}
+
+/// The known name that is most like this one, if any is. Nobody has typed a long name by mistake, and time and memory
+/// that it takes to compare two grow with both.
 fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    const LONG: usize = 100;
+    if name.len() > LONG {
+        return None;
+    }
+    let known = known.filter(|name| name.len() <= LONG);
     let distance = |k: &&str| strsim::damerau_levenshtein(name, k);
     known.min_by_key(distance).filter(|k| distance(k) <= 1 + name.len() / 4)
 }

@@ -1,5 +1,6 @@
 //! Every combination of a file's scenes, estimators and termination rules, each refused where it cannot work.
 
+use super::bounds;
 use super::choices::{self, Choice};
 use super::core::Core;
 use super::error::Error;
@@ -14,6 +15,7 @@ use crate::scene::Scene;
 use crate::scene::library::SceneKind;
 use crate::truth::ClosedForm;
 use serde::Serialize;
+use std::cell::LazyCell;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -35,6 +37,8 @@ pub struct Resolved {
     pub left_out: Vec<LeftOut>,
     /// Names of the swept parameters.
     pub swept: Vec<String>,
+    /// Surfaces of the scenes that were built, and those that cells keep a copy of.
+    surfaces: [usize; 2],
 }
 
 /// All that the file asks for.
@@ -70,14 +74,29 @@ fn grid_cells(
     let scenes = axis(&grid.scene, "scenes", at, choices::scenes)?;
     let estimators = axis(&grid.estimator, "estimators", at, |s| choices::estimators(s, spec.faults))?;
     let roulettes = axis(&grid.roulette, "termination rules", at, |s| Ok(choices::roulettes(s)))?;
+    let before = resolved.cells.len() + resolved.left_out.len();
+    let counts = [scenes.len(), estimators.len(), roulettes.len()];
+    let of = "scenes, estimators and termination rules";
+    bounds::combinations(&counts, of)
+        .and_then(|()| bounds::combinations(&[before + counts.iter().product::<usize>()], "all grids"))
+        .map_err(|e| at(grid.scene.span(), e))?;
     for scene in &scenes {
         let built = scene.choice.value.build();
+        let written = scene.choice.value.written() * estimators.len() * roulettes.len();
+        resolved.surfaces[0] += built.surfaces().len();
+        resolved.surfaces[1] = resolved.surfaces[1].saturating_add(written);
+        bounds::surfaces(resolved.surfaces[0], "scenes have")
+            .and_then(|()| bounds::surfaces(resolved.surfaces[1], "cells keep a copy of"))
+            .map_err(|e| at(scene.span.clone(), e))?;
+        let seen = LazyCell::new(|| reach::sees_smooth(&built));
         for estimator in &estimators {
             for roulette in &roulettes {
                 let (untermined, fault) = estimator.choice.value;
                 let whole = untermined.with(roulette.choice.value, pixels(&built));
                 lit(&whole, &built).map_err(|e| at(scene.span.clone(), e))?;
                 ends(&whole, &built).map_err(|e| at(roulette.span.clone(), e))?;
+                bounds::landed(&whole, ray_bound(&whole, &built))
+                    .map_err(|e| at(estimator.span.clone(), e))?;
                 let run = runs::realizations(spec, grid, &whole, &estimator.span)
                     .map_err(|(span, message)| at(span, message))?;
                 let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
@@ -104,11 +123,12 @@ fn grid_cells(
                     runs: 1,
                     pixels: pixels(&built),
                     rays: rays(&scene.choice.value, &built, &whole),
-                    finds_all: reach::finds_all(&whole, &built),
+                    finds_all: reach::finds_all(&whole, &built, || *seen),
                     address: address(spec, &scene.choice.value, &whole, fault),
                     paired: spec.streams == Streams::Paired,
                     streams: Vec::new(),
                     may_stop: false,
+                    studied: false,
                     patience: PATIENCE,
                 };
                 match reach::out_of(&cell, &built) {
@@ -135,6 +155,8 @@ fn axis<S, T>(
     let mut all = Vec::new();
     for one in written.get_ref() {
         let choices = resolve(&one.get_ref().0).map_err(|message| at(one.span(), message))?;
+        bounds::combinations(&[all.len() + choices.len()], what)
+            .map_err(|message| at(one.span(), message))?;
         all.extend(choices.into_iter().map(|choice| Written { choice, span: one.span() }));
     }
     Ok(all)

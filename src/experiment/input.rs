@@ -5,6 +5,7 @@ pub mod schema;
 
 pub use scene::*;
 
+use super::bounds;
 use crate::scene::Rgb;
 use serde::de::value::{MapAccessDeserializer, MapDeserializer};
 use serde::de::{DeserializeOwned, Error as _, MapAccess, SeqAccess, Visitor};
@@ -95,6 +96,12 @@ impl<'de> Deserialize<'de> for Sweep {
         if values.is_empty() {
             return Err(D::Error::custom("an empty list leaves nothing to run; give at least one number"));
         }
+        let most = bounds::CELLS;
+        check(
+            values.len() <= most,
+            format!("a list of {}", values.len()),
+            &format!("at most {most} numbers"),
+        )?;
         Ok(Sweep(values))
     }
 }
@@ -189,6 +196,21 @@ pub fn optional_count<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u32>, D:
     Ok(Some(v as u32))
 }
 
+/// Tables of one kind: so many that each can be held against all cells.
+pub fn tables<'de, D: Deserializer<'de>, T: Deserialize<'de>>(d: D) -> Result<Vec<T>, D::Error> {
+    let tables = Vec::deserialize(d)?;
+    let (has, most) = (tables.len(), bounds::TABLES);
+    check(has <= most, format!("a list of {has} tables"), &format!("at most {most} of one kind"))?;
+    Ok(tables)
+}
+
+/// Seeds of a study.
+pub fn optional_seeds<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u32>, D::Error> {
+    let v = i64::deserialize(d)?;
+    check((1..=MOST_SEEDS).contains(&v), v, "a whole number of seeds from 1 to 10^6")?;
+    Ok(Some(v as u32))
+}
+
 /// Runs that samples are cut into.
 pub fn runs<'de, D: Deserializer<'de>>(d: D) -> Result<u64, D::Error> {
     const LEAST: i64 = crate::stats::decay::MIN_RUNS as i64;
@@ -210,6 +232,9 @@ pub fn probability<'de, D: Deserializer<'de>>(d: D) -> Result<f64, D::Error> {
 
 /// More realizations than this are a slip of the finger.
 pub const MOST_SAMPLES: i64 = 1_000_000_000_000_000;
+
+/// A study keeps what each of its runs has found.
+pub const MOST_SEEDS: i64 = 1_000_000;
 
 /// A number of bounces: 0 to 1000.
 pub fn bounces<'de, D: Deserializer<'de>>(d: D) -> Result<u32, D::Error> {

@@ -4,6 +4,7 @@
 
 use super::cell::{self, Block};
 use super::error::Error;
+use super::file;
 use super::grid;
 use super::pixels::Pixels;
 use super::reach;
@@ -56,7 +57,7 @@ pub fn begin(scene: &SceneKind, estimator: &Estimator, seed: u64) -> Result<Own,
         let why = "a reference is made by an unbiased estimator: without a clamp, and not by photon density";
         return Err(Error::Refused(why.to_owned()));
     }
-    if !reach::finds_all(estimator, &built) {
+    if !reach::finds_all(estimator, &built, || reach::sees_smooth(&built)) {
         let why = "this estimator misses light from the scene's points, so it makes no reference";
         return Err(Error::Refused(why.to_owned()));
     }
@@ -70,13 +71,16 @@ pub fn resume(path: &Path, wanted: Own) -> Result<Own, Error> {
     if !path.exists() {
         return Ok(wanted);
     }
-    let bytes = fs::read(path).map_err(|e| Error::io("cannot read", path, e))?;
+    let bytes = file::bytes(path, file::STORED).map_err(|e| Error::io("cannot read", path, e))?;
     let refused = |why: String| {
         Error::Refused(format!("{} cannot be continued: {why}; choose another -o", path.display()))
     };
     let stored = Own::read(&bytes).map_err(|e| refused(e.to_string()))?;
     match stored.provenance.difference(&wanted.provenance) {
         Some(difference) => Err(refused(format!("it was made for {difference}"))),
+        None if stored.size != wanted.size => {
+            Err(refused(format!("it has {} pixels along each edge, not {}", stored.size, wanted.size)))
+        }
         None => Ok(stored),
     }
 }

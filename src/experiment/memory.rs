@@ -18,6 +18,10 @@ const STREAM: f64 = 1024.0;
 /// A photon in its map, with its place in the tree: each particle that is sent lands a few times.
 const PARTICLE: f64 = 400.0;
 
+/// The record of a block of a probe, and of each of its bets.
+const RECORD: f64 = 1650.0;
+const BETS: f64 = 285.0;
+
 /// What a finished block leaves in its cell.
 const LEFT: f64 = 256.0;
 
@@ -51,6 +55,36 @@ pub fn foreseen(cell: &CellPlan, threads: usize) -> f64 {
     };
     waiting + merged + maps
 }
+
+/// About how many bytes the journal of a cell will have.
+pub fn journal(cell: &CellPlan) -> f64 {
+    let blocks = cell.blocks() as f64;
+    let units = (blocks / cell.unit() as f64).ceil();
+    let image = if cell.pixels > 1 { PIXEL * cell.pixels as f64 } else { 0.0 };
+    blocks * (RECORD + BETS * cell.streams.len() as f64) + units * image
+}
+
+/// Of several cells, which are sampled one after the other.
+///
+/// # Errors
+///
+/// When the largest of them takes more than there is.
+pub fn enough(cells: &[CellPlan], threads: usize) -> Result<(), String> {
+    let Some(available) = available() else { return Ok(()) };
+    let most = cells.iter().map(|cell| foreseen(cell, threads)).fold(0.0, f64::max);
+    match most > available {
+        false => Ok(()),
+        true => Err(format!(
+            "about {:.1} GiB of memory are needed with {threads} threads, and {:.1} GiB are left; take fewer threads (--jobs), \
+             pixels, photons or samples, or add --force to try all the same",
+            most / GIB,
+            available / GIB
+        )),
+    }
+}
+
+/// Bytes of a GiB.
+pub const GIB: f64 = 1_073_741_824.0;
 
 /// Bytes that this process may still take, as Linux tells: what is free, within the limit of its control group.
 pub fn available() -> Option<f64> {

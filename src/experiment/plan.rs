@@ -1,6 +1,8 @@
 //! The resolved experiment: every cell with its samples and what it will cost.
 
 use super::about;
+use super::bounds;
+use super::cell::Keep;
 use super::core::Core;
 use super::error::Error;
 use super::grid;
@@ -9,7 +11,7 @@ use super::references::{self, NamedReference};
 use super::spec::{self, Spec};
 use super::stakes;
 use super::unit;
-use crate::estimator::{Estimate, Estimator, MAX_RAYS, Property};
+use crate::estimator::{Estimate, Estimator, Property};
 use crate::faults::{Fault, Faulty};
 use crate::sampling::Address;
 use crate::scene::library::SceneKind;
@@ -61,6 +63,8 @@ pub struct CellPlan {
     pub streams: Vec<Stream>,
     /// Whether it may end before all samples are taken: nothing but claims about this cell alone wants them.
     pub may_stop: bool,
+    /// Whether it is a run of a study.
+    pub studied: bool,
     /// A walk that takes longer does not end, and makes the cell invalid.
     pub patience: Duration,
 }
@@ -81,6 +85,11 @@ impl CellPlan {
         self.samples / self.block
     }
 
+    /// What is kept of each block.
+    pub fn keep(&self) -> Keep {
+        Keep { traces: self.traced, parts: self.studied }
+    }
+
     /// Blocks that are kept as one.
     pub fn unit(&self) -> u64 {
         unit::blocks(self)
@@ -88,7 +97,7 @@ impl CellPlan {
 
     /// Expected rays of the whole cell.
     pub fn total_rays(&self) -> f64 {
-        self.rays * (self.samples * self.runs) as f64
+        self.rays * self.samples as f64 * self.runs as f64
     }
 }
 
@@ -107,8 +116,8 @@ pub struct Plan {
     pub swept: Vec<String>,
     /// Stored images that the file names.
     pub references: Vec<NamedReference>,
-    /// How many questions each claim asks at most in the whole experiment, if only one of its cells is run.
-    pub(super) whole: Option<Vec<usize>>,
+    /// How many questions each claim asks at most: in the whole experiment, also if only one of its cells is run.
+    pub(super) questions: Vec<usize>,
 }
 
 /// A cell that cannot be run.
@@ -139,13 +148,12 @@ pub struct Overrides {
     pub force: bool,
     /// Seconds after which a walk is taken not to end, instead of [`PATIENCE`].
     pub walk_seconds: Option<f64>,
+    /// Read what the file names outside of the folder of its project, too.
+    pub allow_outside: bool,
 }
 
 /// A walk that takes longer than this does not end.
 pub const PATIENCE: Duration = Duration::from_secs(60);
-
-/// More rays than this in one cell are out of proportion: hours on one core.
-const MAX_CELL_RAYS: f64 = 1e11;
 
 /// Rays a second and core that predicted times assume.
 pub const RAYS_PER_SECOND: f64 = 1e7;
@@ -162,9 +170,10 @@ impl Plan {
         let mut spec = spec::parse(file, source)?;
         spec.seed = overrides.seed.unwrap_or(spec.seed);
         spec.core = overrides.core.unwrap_or(spec.core);
-        let grid::Resolved { cells, left_out, swept } = grid::resolve(&spec, file, source)?;
-        let references = references::load(&spec, &cells, file, source)?;
-        let mut plan = Plan { name: name.to_owned(), spec, cells, left_out, swept, references, whole: None };
+        let grid::Resolved { cells, left_out, swept, .. } = grid::resolve(&spec, file, source)?;
+        let references = references::load(&spec, &cells, file, source, overrides.allow_outside)?;
+        let mut plan =
+            Plan { name: name.to_owned(), spec, cells, left_out, swept, references, questions: Vec::new() };
         plan.distinct()?;
         about::something(&plan, file, source)?;
         if let Some(text) = &overrides.filter {
@@ -176,6 +185,7 @@ impl Plan {
             let swept = &plan.swept;
             plan.cells.retain(|cell| label(cell, swept).contains(text.as_str()));
         }
+        plan.count_questions();
         stakes::lay(&mut plan);
         plan.allot(overrides);
         if let Some(seconds) = overrides.walk_seconds {
@@ -185,7 +195,7 @@ impl Plan {
         if let Some(wanted) = &overrides.only {
             plan.keep_only(wanted)?;
         }
-        plan.cells.iter().try_for_each(|cell| plan.proportionate(cell, overrides.force))?;
+        bounds::proportionate(&plan, overrides.force).map_err(Error::Refused)?;
         Ok(plan)
     }
 
@@ -212,8 +222,11 @@ impl Plan {
 
     /// How many questions a claim, by its index, asks at most.
     pub(super) fn questions(&self, claim: usize) -> usize {
-        let counted = || stakes::questions(self, &self.spec.claim[claim]);
-        self.whole.as_ref().map_or_else(counted, |whole| whole[claim])
+        self.questions[claim]
+    }
+
+    pub(super) fn count_questions(&mut self) {
+        self.questions = self.spec.claim.iter().map(|claim| stakes::questions(self, claim)).collect();
     }
 
     /// Forgets all cells but one, but not how many questions were to share the error probabilities: when a cell may end
@@ -224,12 +237,12 @@ impl Plan {
             let why = format!("no cell of {} is called `{wanted}`", self.name);
             return Err(Error::Refused(format!("{why}; there are:{}", listed(&labels, wanted))));
         }
-        // studies judge each cell as if it were the whole experiment
-        if self.spec.seeds.is_none() {
-            self.whole = Some((0..self.spec.claim.len()).map(|claim| self.questions(claim)).collect());
-        }
         let swept = &self.swept;
         self.cells.retain(|cell| label(cell, swept) == wanted);
+        // studies judge each cell as if it were the whole experiment
+        if self.spec.seeds.is_some() {
+            self.count_questions();
+        }
         Ok(())
     }
 
@@ -244,26 +257,6 @@ impl Plan {
                     self.name
                 )));
             }
-        }
-        Ok(())
-    }
-
-    fn proportionate(&self, cell: &CellPlan, force: bool) -> Result<(), Error> {
-        let label = self.label(cell);
-        let one = cell.rays / cell.pixels as f64;
-        if one > MAX_RAYS as f64 {
-            return Err(Error::Refused(format!(
-                "{label}: one sample would trace {one:.2e} rays, and a walk is cut at {MAX_RAYS}; \
-                 lower n or depth"
-            )));
-        }
-        let total = cell.total_rays();
-        if total > MAX_CELL_RAYS && !force {
-            let hours = total / RAYS_PER_SECOND / 3600.0;
-            return Err(Error::Refused(format!(
-                "{label}: {total:.2e} rays, about {hours:.0} hours on one core; lower n, depth or samples, \
-                 or add --force to run it all the same"
-            )));
         }
         Ok(())
     }

@@ -23,19 +23,23 @@ pub fn out_of(cell: &CellPlan, scene: &Scene) -> Option<String> {
 }
 
 /// Whether no light is out of an estimator's reach: paths from the eye find points by sampling them only, and not behind
-/// mirrors or glass; particles do not reach what the eye sees in them.
-pub fn finds_all(estimator: &Estimator, scene: &Scene) -> bool {
+/// mirrors or glass; particles do not reach what the eye sees in them, which is what `sees_smooth` tells.
+pub fn finds_all(estimator: &Estimator, scene: &Scene, sees_smooth: impl Fn() -> bool) -> bool {
     let smooth = || scene.surfaces().iter().any(|s| s.material.bsdf.is_dirac());
     scene.points().next().is_none()
         || match estimator {
             Estimator::PhotonMap(_) => true,
-            Estimator::LightTracing(_) => !sees_smooth(scene),
+            Estimator::LightTracing(_) => !sees_smooth(),
             _ => estimator.samples_lights() && !smooth(),
         }
 }
 
+/// Pixels along each edge that are looked at, at most.
+const LOOKED_AT: u32 = 512;
+
 /// Whether one of many rays from the sensor meets a mirror or glass first.
-fn sees_smooth(scene: &Scene) -> bool {
+/// The pixels of a large image are looked at in part.
+pub fn sees_smooth(scene: &Scene) -> bool {
     let (width, height) = scene.sensor.resolution();
     let rays = 4096 / (width * height).min(4096) + 1;
     let address = Address::of(&["what the sensor sees"]);
@@ -43,5 +47,9 @@ fn sees_smooth(scene: &Scene) -> bool {
         let start = scene.start((x, y), &mut address.stream(u64::from(ray), u64::from(y * width + x)));
         scene.intersect(&start.ray, start.time).is_some_and(|x| x.material.bsdf.is_dirac())
     };
-    (0..height).any(|y| (0..width).any(|x| (0..rays).any(|ray| meets(ray, x, y))))
+    let step = |edge: u32| edge.div_ceil(LOOKED_AT) as usize;
+    let (columns, rows) = (step(width), step(height));
+    (0..height)
+        .step_by(rows)
+        .any(|y| (0..width).step_by(columns).any(|x| (0..rays).any(|ray| meets(ray, x, y))))
 }

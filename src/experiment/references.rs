@@ -2,11 +2,12 @@
 
 use super::cell::TILES;
 use super::error::Error;
+use super::file::{STORED, bytes};
+use super::inside;
 use super::plan::CellPlan;
 use super::spec::{ReferenceSpec, Spec};
 use crate::scene::library::SceneKind;
 use crate::truth::{BadReference, Reference};
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -21,18 +22,19 @@ pub struct NamedReference {
     pub reference: Arc<Reference>,
 }
 
-/// Reads all references of a file, whose text is `source`.
+/// Reads all references of a file, whose text is `source`; those that lie outside of its project only if that is allowed.
 pub fn load(
     spec: &Spec,
     cells: &[CellPlan],
     file: &Path,
     source: &str,
+    outside: bool,
 ) -> Result<Vec<NamedReference>, Error> {
     let mut all: Vec<NamedReference> = Vec::new();
     for written in &spec.reference {
         let scene = scene_of(written, cells).map_err(|e| Error::at(file, source, written.scene.span(), e))?;
         let at = |message: String| Error::at(file, source, written.file.span(), message);
-        let reference = read(written, scene, file.parent().unwrap_or(Path::new(""))).map_err(at)?;
+        let reference = read(written, scene, file, outside).map_err(at)?;
         let name = written.scene.get_ref().clone();
         let independent = |r: &Reference| r.provenance.is_none();
         let second = |r: &NamedReference| r.scene == name && independent(&r.reference);
@@ -61,11 +63,11 @@ fn scene_of<'a>(written: &ReferenceSpec, cells: &'a [CellPlan]) -> Result<&'a Sc
     }
 }
 
-fn read(written: &ReferenceSpec, scene: &SceneKind, folder: &Path) -> Result<Reference, String> {
-    let path = folder.join(written.file.get_ref());
+fn read(written: &ReferenceSpec, scene: &SceneKind, file: &Path, outside: bool) -> Result<Reference, String> {
+    let path = inside::resolve(file, written.file.get_ref(), outside)?;
     let bad = |why: String| format!("{} is no reference: {why}", path.display());
-    let bytes = fs::read(&path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
-    let mut reference = Reference::read(&bytes).map_err(|e| bad(e.to_string()))?;
+    let stored = bytes(&path, STORED).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let mut reference = Reference::read(&stored).map_err(|e| bad(e.to_string()))?;
     let (width, height) = scene.build().sensor.resolution();
     if width != height {
         return Err(format!("references are square, and this scene's image has {width} x {height} pixels"));

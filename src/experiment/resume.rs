@@ -8,6 +8,8 @@ use super::plan::CellPlan;
 use super::run::{Next, Sampled, merged};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+use std::thread;
 use std::time::Instant;
 
 /// Runs one cell as [`super::run_cell`] does, but goes on from a journal, which receives what is new.
@@ -93,16 +95,41 @@ pub fn join(
     kept: &mut Kept,
     is_decided: &dyn Fn(&mut Cell) -> bool,
 ) -> Result<Result<Cell, Vec<Range<u64>>>, Error> {
-    let mut source = |blocks: Range<u64>, _| {
-        Ok(match kept.unit(index, plan, &blocks)? {
-            Found::Unit(unit) => Next::Unit(unit),
-            Found::Failed(failure) => Next::Failed(failure),
-            Found::Missing => Next::Stopped,
-        })
-    };
-    let cell = merged(plan, &mut source, &|_| (), is_decided)?;
+    let cell = thread::scope(|scope| {
+        // one thread reads ahead of the one that merges; it ends when nobody takes any more
+        let (give, take) = mpsc::sync_channel(AHEAD);
+        scope.spawn(|| {
+            let give = give; // ends with this thread
+            let units = plan.blocks().div_ceil(plan.unit());
+            let mut blocks = (0..units).map(|unit| expected(plan, unit * plan.unit())).peekable();
+            while blocks.peek().is_some() {
+                let some = blocks.by_ref().take(if plan.pixels == 1 { TOGETHER } else { 1 });
+                let found: Vec<_> = some.map(|blocks| kept.unit(index, plan, &blocks)).collect();
+                if give.send(found).is_err() {
+                    break;
+                }
+            }
+        });
+        let mut read = take.into_iter().flatten();
+        let mut source = |_, _| {
+            Ok(match read.next().expect("all blocks are read")? {
+                Found::Unit(unit) => Next::Unit(unit),
+                Found::Failed(failure) => Next::Failed(failure),
+                Found::Missing => Next::Stopped,
+            })
+        };
+        let cell = merged(plan, &mut source, &|_| (), is_decided);
+        drop(read);
+        cell
+    })?;
     Ok(cell.ok_or_else(|| missing(plan, index, kept, Shard::WHOLE)))
 }
+
+/// How often is read ahead.
+const AHEAD: usize = 2;
+
+/// Blocks of a probe that are read at a time: waiting for each takes longer than reading it.
+const TOGETHER: usize = 128;
 
 /// Units of a cell that belong to a part and are not there.
 pub fn missing(plan: &CellPlan, index: usize, kept: &Kept, shard: Shard) -> Vec<Range<u64>> {
@@ -141,7 +168,7 @@ impl<'a> Sampler<'a> {
         let next = sampled.next(blocks.clone(), look, stop, &mut || journal.flush_if_due())?;
         match &next {
             Next::Unit(unit) => {
-                journal.blocks(self.index, blocks, std::mem::take(&mut sampled.records), unit)?;
+                journal.blocks(self.index, blocks, &mut sampled.records, unit)?;
             }
             Next::Failed(failure) => journal.failure(self.index, failure)?,
             Next::Stopped => {}

@@ -3,7 +3,7 @@
 
 use super::ahead::{Ahead, Limits};
 use super::block::OpenBlock;
-use super::cell::{Block, Cell};
+use super::cell::{Block, Cell, Keep};
 use super::core::Sampler;
 use super::error::Error;
 use super::guard::{Failure, guarded};
@@ -67,7 +67,7 @@ pub fn merged(
                 break;
             }
             Next::Unit(unit) => {
-                cell.merge_unit(&unit, plan.traced);
+                cell.merge_unit(&unit, plan.keep());
                 progress(unit.rays());
             }
         }
@@ -217,7 +217,7 @@ pub fn sample(scene: &Scene, estimator: &impl Estimate, address: &Address, sampl
     for block in blocks {
         let mut unit = Unit::default();
         unit.push(block);
-        cell.merge_unit(&unit, true);
+        cell.merge_unit(&unit, Keep { traces: true, parts: false });
     }
     cell.finish();
     cell

@@ -3,7 +3,10 @@
 use super::cell::Cell;
 use super::core::Core;
 use super::error::Error;
+use super::file;
+use super::input::MOST_SAMPLES;
 use super::plan::Plan;
+use crate::stats::decay::MIN_RUNS;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -101,12 +104,21 @@ impl Store {
 /// The cells stored in `folder`, if they belong to `plan`, which learns the seed, samples and blocks of their run.
 pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
     let path = folder.join(CELLS);
-    let text = fs::read_to_string(&path).map_err(|e| Error::io("cannot read", &path, e))?;
-    let stored: Stored = serde_json::from_str(&text)
+    let text = file::bytes(&path, file::STORED).map_err(|e| Error::io("cannot read", &path, e))?;
+    read(&path, &text, plan)
+}
+
+/// As [`load`], from the bytes of the file `path`.
+pub fn read(path: &Path, text: &[u8], plan: &mut Plan) -> Result<Stored, Error> {
+    let stored: Stored = serde_json::from_slice(text)
         .map_err(|e| Error::Refused(format!("{} is damaged: {e}", path.display())))?;
-    let whole = stored.cells.iter().flatten().all(Cell::is_whole);
-    if !whole || stored.samples.len() != stored.cells.len() {
-        return Err(Error::Refused(format!("{} is damaged: lists are too short", path.display())));
+    let whole = stored.cells.iter().flatten().all(|cell| cell.is_whole() && has_whole_runs(cell));
+    let counted = stored.samples.iter().all(|samples| (1..=2 * MOST_SAMPLES as u64).contains(samples));
+    if !whole || !counted || stored.samples.len() != stored.cells.len() {
+        return Err(Error::Refused(format!(
+            "{} is damaged: lists are too short, or numbers none",
+            path.display()
+        )));
     }
     let labels: Vec<String> = plan.cells.iter().map(|cell| plan.label(cell)).collect();
     if stored.labels != labels || stored.cells.len() != labels.len() {
@@ -120,12 +132,19 @@ pub fn load(folder: &Path, plan: &mut Plan) -> Result<Stored, Error> {
     for (cell, (&samples, kept)) in plan.cells.iter_mut().zip(stored.samples.iter().zip(&stored.cells)) {
         cell.samples = samples;
         let block = kept.as_ref().and_then(|kept| kept.cost.n.checked_div(kept.blocks[0].n));
-        cell.block = block.unwrap_or(cell.block);
+        cell.block = block.filter(|block| *block > 0).unwrap_or(cell.block);
     }
     for (i, cell) in plan.cells.iter_mut().enumerate() {
         cell.core = stored.cores.get(i).copied().unwrap_or_default();
     }
     Ok(stored)
+}
+
+/// Whether all of its runs, if it has some, were looked at as often.
+fn has_whole_runs(cell: &Cell) -> bool {
+    let looks = cell.traces.first().map_or(1, Vec::len);
+    let is_enough = cell.traces.is_empty() || cell.traces.len() >= MIN_RUNS;
+    is_enough && (1..64).contains(&looks) && cell.traces.iter().all(|trace| trace.len() == looks)
 }
 
 /// The folder `name` beside `folder`, or `name-2` and so on where that one holds something that is not ours.

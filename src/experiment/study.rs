@@ -165,7 +165,9 @@ fn trial(plan: &Plan, index: usize, seed: u64, stop: &AtomicBool, progress: &dyn
     let mut cell_plan = plan.cells[index].clone();
     cell_plan.address = cell_plan.address.repetition(seed);
     cell_plan.may_stop = true;
-    let alone = Plan { cells: vec![cell_plan], whole: None, ..plan.clone() };
+    cell_plan.studied = true;
+    let mut alone = Plan { cells: vec![cell_plan], ..plan.clone() };
+    alone.count_questions();
     let cell_plan = &alone.cells[0];
     // looked at on the way, to learn when it was caught, but run to the end: other rules know no early end
     let look = |cell: &mut Cell| {

@@ -16,10 +16,11 @@ pub struct Unit {
 }
 
 /// Paths of a unit of an image, at most: so many that keeping its pixels costs little beside them.
-const PATHS: u64 = 1 << 18;
+const PATHS: u64 = 1 << 21;
 
-/// Rays of a unit of an image, at most: about a second's work.
-const RAYS: f64 = 16_777_216.0;
+/// Rays of a unit of an image, at most, by the plan, which may foresee several times those that there are: about a second's
+/// work.
+const RAYS: f64 = 5e7;
 
 /// Blocks of a unit, at most.
 const BLOCKS: u64 = 16;
@@ -76,15 +77,22 @@ impl Unit {
         }
         bytes.extend(width.to_le_bytes());
         bytes.extend(height.to_le_bytes());
-        bytes.reserve(size_of_val(mean.as_slice()) + size_of_val(m2.as_slice()));
-        for value in mean.iter().chain(m2) {
-            value.to_array().iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        for values in [mean, m2] {
+            let start = bytes.len();
+            bytes.resize(start + size_of_val(values.as_slice()), 0);
+            // fixed sizes: a copy, not a loop over bytes
+            for (to, value) in bytes[start..].as_chunks_mut::<24>().0.iter_mut().zip(values) {
+                let [x, y, z] = value.to_array().map(f64::to_le_bytes);
+                to[..8].copy_from_slice(&x);
+                to[8..16].copy_from_slice(&y);
+                to[16..].copy_from_slice(&z);
+            }
         }
     }
 }
 
 /// The record of a block.
-pub(super) fn record(block: &Block) -> Vec<u8> {
+pub fn record(block: &Block) -> Vec<u8> {
     postcard::to_allocvec(block).expect("numbers have a form")
 }
 

@@ -1,7 +1,7 @@
 //! `reports/index.html`: all experiments of a folder, with their questions and answers.
 
 use super::page;
-use crate::experiment::Error;
+use crate::experiment::{Error, file};
 use crate::stats::Verdict;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
@@ -29,6 +29,24 @@ pub struct Summary {
 pub const FILE: &str = "summary.json";
 
 impl Summary {
+    /// Reads the bytes of `file`.
+    ///
+    /// # Errors
+    ///
+    /// When it is damaged, or its figure is not in its folder.
+    pub fn parse(file: &Path, text: &[u8]) -> Result<Self, Error> {
+        let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", file.display()));
+        let summary: Self = serde_json::from_slice(text).map_err(damaged)?;
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        match summary.figure.as_ref().filter(|figure| !figure.chars().all(is_plain)) {
+            Some(figure) => Err(Error::Refused(format!(
+                "{} is damaged: `{figure}` is no name of a figure in its folder",
+                file.display()
+            ))),
+            None => Ok(summary),
+        }
+    }
+
     /// The text of the file.
     pub fn text(&self) -> String {
         serde_json::to_string_pretty(self).expect("a summary has a JSON form") + "\n"
@@ -44,9 +62,11 @@ pub fn write(folder: &Path) -> Result<(), Error> {
     let mut summaries = Vec::new();
     for entry in fs::read_dir(folder).map_err(|e| Error::io("cannot read", folder, e))?.flatten() {
         let path = entry.path().join(FILE);
-        let Ok(text) = fs::read(&path) else { continue };
-        let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", path.display()));
-        let summary: Summary = serde_json::from_slice(&text).map_err(damaged)?;
+        if !path.exists() {
+            continue;
+        }
+        let text = file::bytes(&path, file::STORED).map_err(|e| Error::io("cannot read", &path, e))?;
+        let summary = Summary::parse(&path, &text)?;
         // what an interrupted run has left is not the experiment
         if entry.file_name() == *summary.experiment {
             summaries.push(summary);
@@ -57,7 +77,8 @@ pub fn write(folder: &Path) -> Result<(), Error> {
     fs::write(&path, overview(&summaries)).map_err(|e| Error::io("cannot write", &path, e))
 }
 
-fn overview(summaries: &[Summary]) -> String {
+/// The page over these experiments.
+pub fn overview(summaries: &[Summary]) -> String {
     let header = html! {
         h1 { "furnace" }
         p.question { "What a test bench for Monte Carlo light-transport estimators has found." }

@@ -4,7 +4,7 @@ use super::metrics::{self, Image, Metrics};
 use super::raster::Raster;
 use super::{difference, figure, images, plots};
 use crate::experiment::store::Store;
-use crate::experiment::{Cell, Error, Plan};
+use crate::experiment::{Cell, Error, Plan, file};
 use crate::scene::Rgb;
 use crate::truth::{Reference, Truth};
 use rayon::prelude::*;
@@ -116,7 +116,7 @@ fn copy_previews(pictures: &[Picture], store: &Store, folder: &Path) -> Result<(
 
 fn read(folder: &Path, file: &str) -> Result<Vec<u8>, Error> {
     let path = folder.join(file);
-    std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))
+    file::bytes(&path, file::STORED).map_err(|e| Error::io("cannot read", &path, e))
 }
 
 fn failed(store: &Store, error: &dyn std::error::Error) -> Error {
@@ -126,7 +126,7 @@ fn failed(store: &Store, error: &dyn std::error::Error) -> Error {
 /// Indices of the cells that have an image.
 fn with_images<'a>(plan: &'a Plan, cells: &'a [Option<Cell>]) -> impl Iterator<Item = (usize, &'a Cell)> {
     let cells = cells.iter().enumerate().filter_map(|(i, cell)| Some((i, cell.as_ref()?)));
-    cells.filter(|&(i, _)| plan.cells[i].pixels > 1)
+    cells.filter(|&(i, cell)| plan.cells[i].pixels > 1 && cell.failure.is_none())
 }
 
 /// A cell's file name; with its number where another cell's label differs only in what file names cannot hold.

@@ -1,7 +1,7 @@
 //! What is of one run alone: when, where and how fast. Results do not depend on it; `run.json` and one line of the page
 //! hold it.
 
-use crate::experiment::Error;
+use crate::experiment::{Error, file};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -54,9 +54,18 @@ impl Run {
     /// When there is none, or it is damaged.
     pub fn read(folder: &Path) -> Result<Self, Error> {
         let path = folder.join(FILE);
-        let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
-        let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", path.display()));
-        serde_json::from_slice(&text).map_err(damaged)
+        let text = file::bytes(&path, file::STORED).map_err(|e| Error::io("cannot read", &path, e))?;
+        Self::parse(&path, &text)
+    }
+
+    /// Reads the bytes of `file`.
+    ///
+    /// # Errors
+    ///
+    /// When it is damaged.
+    pub fn parse(file: &Path, text: &[u8]) -> Result<Self, Error> {
+        let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", file.display()));
+        serde_json::from_slice(text).map_err(damaged)
     }
 
     /// The text of the file.

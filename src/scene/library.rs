@@ -134,6 +134,14 @@ const CENTER: DVec3 = DVec3::new(0.3, -0.2, 0.5);
 const RADIUS: f64 = 1.3;
 
 impl SceneKind {
+    /// Surfaces and lights that it holds itself, and does not only name.
+    pub fn written(&self) -> usize {
+        match self {
+            SceneKind::Custom(setting) => setting.primitives.len() + setting.points.len(),
+            _ => 0,
+        }
+    }
+
     /// Builds the scene.
     pub fn build(&self) -> Scene {
         match self {

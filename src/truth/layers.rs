@@ -3,6 +3,7 @@
 
 use crate::scene::Rgb;
 use exr::meta::MetaData;
+use exr::meta::header::Header;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
     ReadChannels, ReadLayers, SmallVec, Text, WritableImage, read,
@@ -89,6 +90,35 @@ const MOST: usize = 4096;
 /// Name of the attribute that holds the text.
 const ATTRIBUTE: &str = "furnace";
 
+/// Channels that any file of a known kind has, at most: 19 of a reference of our own.
+const CHANNELS: usize = 64;
+
+/// Bytes that one byte of a file may stand for: a little more than deflate, the tightest of the usual packings, can do.
+const PACKED: usize = 1100;
+
+/// A small image may be packed tighter still.
+const SMALL: usize = 1 << 24;
+
+/// Refuses a header that promises more than a file of so many bytes can hold.
+fn plausible(header: &Header, bytes: usize) -> Result<(), BadReference> {
+    let unreadable = |why: String| Err(BadReference::Unreadable(why));
+    let channels = &header.channels.list;
+    if header.deep {
+        return unreadable("its pixels are deep".to_owned());
+    }
+    if channels.len() > CHANNELS {
+        return unreadable(format!("it has {} channels, and at most {CHANNELS} are read", channels.len()));
+    }
+    let pixel: usize = channels.iter().map(|channel| channel.sample_type.bytes_per_sample()).sum();
+    let promised = header.layer_size.area() * pixel;
+    if promised > bytes.saturating_mul(PACKED).max(SMALL) {
+        return unreadable(format!(
+            "its header promises {promised} bytes of pixels, and it has {bytes} in all"
+        ));
+    }
+    Ok(())
+}
+
 /// One picture of named channels.
 #[derive(Default)]
 pub struct Layers {
@@ -170,21 +200,25 @@ impl Layers {
         let unreadable = |e: exr::error::Error| BadReference::Unreadable(e.to_string());
         // what the header promises is allocated before it is looked for
         let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(unreadable)?;
+        if meta.headers.len() != 1 {
+            return Err(BadReference::Pictures(meta.headers.len()));
+        }
         for header in &meta.headers {
             check((header.layer_size.width(), header.layer_size.height()))?;
+            plausible(header, bytes.len())?;
         }
         let reader = read().no_deep_data().largest_resolution_level().all_channels().all_layers();
         let image = reader.all_attributes().from_buffered(Cursor::new(bytes)).map_err(unreadable)?;
-        let [layer] = &image.layer_data[..] else {
-            return Err(BadReference::Pictures(image.layer_data.len()));
-        };
+        let pictures = image.layer_data.len();
+        let layer = image.layer_data.into_iter().next().ok_or(BadReference::Pictures(pictures))?;
         let provenance = match layer.attributes.other.get(&Text::from(ATTRIBUTE)) {
             Some(AttributeValue::Text(text)) => Some(text.to_string()),
             _ => None,
         };
-        let channels = layer.channel_data.list.iter();
-        let channels = channels.map(|c| (c.name.to_string(), c.sample_data.clone())).collect();
-        Ok(Layers { width: layer.size.width(), height: layer.size.height(), provenance, channels })
+        let (width, height) = (layer.size.width(), layer.size.height());
+        let channels = layer.channel_data.list.into_iter();
+        let channels = channels.map(|c| (c.name.to_string(), c.sample_data)).collect();
+        Ok(Layers { width, height, provenance, channels })
     }
 
     /// Refuses channels of other names.

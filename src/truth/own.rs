@@ -11,6 +11,9 @@ use serde::{Deserialize, Serialize};
 /// Version of the file: raised whenever the same words would no longer lead to the same bits.
 pub const FORMAT: u32 = 1;
 
+/// More realizations than this nobody can have taken.
+const MOST: u64 = 1 << 53;
+
 /// All that a stored reference follows from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
@@ -88,16 +91,22 @@ impl Own {
             return Err(bad(format!("its format is {}, not {FORMAT}", value["format"])));
         }
         let provenance: Provenance = serde_json::from_value(value).map_err(|e| bad(e.to_string()))?;
-        if provenance.samples < 2 {
-            return Err(bad("fewer than 2 samples have no error".to_owned()));
+        if !(2..=MOST).contains(&provenance.samples) {
+            let why = format!("{} samples; they lie in 2 to {MOST}", provenance.samples);
+            return Err(bad(why));
         }
         if provenance.estimator.property() != Property::Unbiased {
             return Err(bad("its estimator is biased".to_owned()));
         }
         // a NaN would be in these, too, and they can say where
-        layers.rgb("")?;
-        layers.rgb("variance.")?;
+        let (seen, scatter) = (layers.rgb("")?, layers.rgb("variance.")?);
         let (mean, m2) = (layers.exact("state.mean.")?, layers.exact("state.m2.")?);
+        let degrees = (provenance.samples - 1) as f64;
+        let is_of = |exact: Rgb, shown: Rgb| (0..3).all(|c| f64::from(exact[c] as f32) == shown[c]);
+        let pairs = mean.iter().zip(&seen).zip(m2.iter().zip(&scatter));
+        if pairs.into_iter().any(|((&m, &s), (&m2, &v))| !is_of(m, s) || !is_of(m2 / degrees, v)) {
+            return Err(bad("its state is not that of its picture".to_owned()));
+        }
         Ok(Own { provenance, size: layers.width, mean, m2 })
     }
 

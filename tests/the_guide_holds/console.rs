@@ -114,7 +114,7 @@ fn known(session: &mut Session<'_>, command: &str) {
         }
         "cargo" => {
             assert!(
-                ["build", "run", "test", "bench", "fmt", "clippy", "doc"].contains(&words[1]),
+                ["build", "run", "test", "bench", "fmt", "clippy", "doc", "deny"].contains(&words[1]),
                 "{command}"
             );
             for (option, folder) in [("--example", "examples"), ("--bench", "benches")] {

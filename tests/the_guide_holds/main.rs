@@ -124,6 +124,7 @@ hold! {
     ci: "docs/src/ci.md",
     cluster: "docs/src/cluster.md",
     json: "docs/src/json.md",
+    input: "docs/src/input.md",
     verdicts: "docs/src/verdicts.md",
     performance: "docs/src/performance.md",
     cornell_flush: "docs/src/cornell_flush.md",

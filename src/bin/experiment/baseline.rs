@@ -4,6 +4,7 @@ use crate::args::Options;
 use crate::files::{self, Source};
 use clap::Args;
 use furnace::experiment::baseline::{Baseline, Comparison};
+use furnace::experiment::file::{STORED, text};
 use furnace::experiment::{Cell, Error, Plan, Row};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -46,7 +47,7 @@ pub fn wanted(source: &Source, plan: &Plan, options: &Options) -> Result<Wanted,
         if !file.exists() {
             return Err(missing(&folder, name, &source.name));
         }
-        let text = fs::read_to_string(&file).map_err(|e| Error::io("cannot read", &file, e))?;
+        let text = text(&file, STORED).map_err(|e| Error::io("cannot read", &file, e))?;
         Ok((name.clone(), Baseline::read(&file, &text)?))
     };
     Ok(Wanted { earlier: baseline.as_ref().map(read).transpose()?, save })

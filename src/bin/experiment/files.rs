@@ -3,7 +3,7 @@
 use crate::args::{Options, is_command};
 use crate::set;
 use furnace::experiment::journal::{Header, Shard};
-use furnace::experiment::{Error, Plan};
+use furnace::experiment::{Error, Plan, file};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +31,7 @@ impl Source {
         if !wanted.ends_with(".toml") && !file.exists() {
             return Err(Error::UnknownExperiment { name: wanted.to_owned(), known: names()? });
         }
-        let text = fs::read_to_string(&file).map_err(|e| Error::io("cannot read", &file, e))?;
+        let text = file::text(&file, file::WRITTEN).map_err(|e| Error::io("cannot read", &file, e))?;
         let name = file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         if is_command(&name) {
             return Err(Error::Refused(format!(
@@ -121,7 +121,7 @@ pub fn names() -> Result<Vec<String>, Error> {
 
 /// What an experiment asks, if its file can be read.
 pub fn question(name: &str) -> Option<String> {
-    let text = fs::read_to_string(folder()?.join(format!("{name}.toml"))).ok()?;
+    let text = file::text(&folder()?.join(format!("{name}.toml")), file::WRITTEN).ok()?;
     let table: toml::Table = toml::from_str(&text).ok()?;
     table.get("question")?.as_str().map(str::to_owned)
 }

@@ -1,5 +1,7 @@
 //! The command line: `experiment rr_sweep`.
 
+#![forbid(unsafe_code)]
+
 mod args;
 mod baseline;
 mod claims;

@@ -44,16 +44,10 @@ pub fn merge(args: &Merge, options: &Options) -> Result<u8, Error> {
 
 /// All journals of some folders, read; what is damaged is told.
 fn scans(folders: &[PathBuf]) -> Result<Vec<Scan>, Error> {
-    let mut scans = Vec::new();
-    for folder in folders {
-        for path in journal::all(folder)? {
-            let scan = journal::scan(&path)?;
-            if let Some(told) = scan.damage.told(&path) {
-                eprintln!("warning: {told}");
-            }
-            scans.push(scan);
-        }
-    }
+    let paths = folders.iter().map(|folder| journal::all(folder)).collect::<Result<Vec<_>, _>>()?;
+    let scans = journal::scan_all(&paths.concat())?;
+    let damage = scans.iter().filter_map(|scan| scan.damage.told(&scan.path));
+    damage.for_each(|told| eprintln!("warning: {told}"));
     Ok(scans)
 }
 

@@ -84,7 +84,7 @@ impl<'a> Scene<'a> {
         let built = kind.build();
         let explicit = explicit();
         let is_known = Truth::of(&kind, &explicit, &[]).mean(0, Counted::All).is_some();
-        if !is_known && !reach::finds_all(&explicit, &built) {
+        if !is_known && !reach::finds_all(&explicit, &built, || reach::sees_smooth(&built)) {
             let why = "its right value is not known, and paths do not find all of its light: nothing could be claimed";
             return Err(Error::Refused(format!("{name}: {why}; take another scene")));
         }

@@ -4,6 +4,7 @@ use crate::HELD;
 use crate::args::{Format, Options};
 use crate::files::{self, Source};
 use anstream::println;
+use furnace::experiment::memory::{self, GIB};
 use furnace::experiment::plan::RAYS_PER_SECOND;
 use furnace::experiment::store::{self, Stored};
 use furnace::experiment::{Error, Plan};
@@ -21,7 +22,10 @@ pub fn plans(names: &[String], margin: Option<f64>, options: &Options) -> Result
                 let planned = Planned::new(&plan, margin, stored.as_ref());
                 println!("{}", Object::new(&plan, Content::Plan(planned)).line());
             }
-            _ => print(&plan, margin, stored.as_ref()),
+            _ => {
+                print(&plan, margin, stored.as_ref());
+                println!("{}", room(&plan, options));
+            }
         }
     }
     Ok(HELD)
@@ -59,6 +63,15 @@ pub fn list(options: &Options) -> Result<u8, Error> {
         }
     }
     Ok(HELD)
+}
+
+/// What a run takes of memory and disk.
+fn room(plan: &Plan, options: &Options) -> String {
+    let threads = options.threads();
+    let memory = plan.cells.iter().map(|cell| memory::foreseen(cell, threads)).fold(0.0, f64::max);
+    let journal: f64 = plan.cells.iter().map(memory::journal).sum();
+    let (memory, journal) = (memory / GIB, journal / GIB);
+    format!("about {memory:.2} GiB of memory with {threads} threads, and a journal of {journal:.2} GiB")
 }
 
 fn cost(plan: &Plan) -> String {

@@ -18,7 +18,7 @@ pub fn begin(source: &Source, plan: &Plan, options: &Options) -> Run {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: commit(),
         started: since.map_or(0, |since| since.as_secs()),
-        threads: if options.jobs == 0 { cores } else { options.jobs.into() },
+        threads: options.threads(),
         machine: Machine {
             architecture: std::env::consts::ARCH.to_owned(),
             system: std::env::consts::OS.to_owned(),

@@ -10,7 +10,9 @@ use furnace::experiment::baseline::Comparison;
 use furnace::experiment::cell::Block;
 use furnace::experiment::journal::{self, Journal, Shard};
 use furnace::experiment::store::{self, Store, Stored};
-use furnace::experiment::{Cell, CellPlan, Error, Plan, Row, mistake, one_block, resume, run_cell, verdict};
+use furnace::experiment::{
+    Cell, CellPlan, Error, Plan, Row, memory, mistake, one_block, resume, run_cell, verdict,
+};
 use furnace::report::json::{self, Content, Object};
 use furnace::report::run::Run;
 use furnace::report::{self, Lookup, answer, overview, terminal};
@@ -72,6 +74,10 @@ fn one(
 ) -> Result<u8, Error> {
     if plan.spec.seeds.is_some() {
         return study::one(source, plan, options, stop);
+    }
+    if !options.force {
+        let short = |why| Error::Refused(format!("{}: {why}", plan.name));
+        memory::enough(&plan.cells, options.threads()).map_err(short)?;
     }
     let folder = source.report_folder(options);
     if let Some(shard) = options.shard {

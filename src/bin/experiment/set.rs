@@ -4,6 +4,9 @@ use furnace::experiment::Error;
 use std::ops::Range;
 use std::path::Path;
 
+/// No key of an experiment file lies deeper.
+const DEEPEST: usize = 32;
+
 /// Applies changes to the text of a file, one after the other.
 pub fn all(file: &Path, text: String, changes: &[String]) -> Result<String, Error> {
     changes.iter().try_fold(text, |text, change| one(file, &text, change))
@@ -20,6 +23,9 @@ fn one(file: &Path, text: &str, change: &str) -> Result<String, Error> {
     let (path, written) = change.split_once('=').ok_or_else(|| {
         at(change, whole.clone(), "expected path=value, such as seed=7 or grid.0.samples=100")
     })?;
+    if path.split('.').nth(DEEPEST).is_some() {
+        return Err(at(change, whole, format!("the path is deeper than {DEEPEST}, and no file is")));
+    }
     let mut table: toml::Value = toml::from_str(text).map_err(|e| Error::toml(file, text, &e))?;
     let parsed = toml::from_str::<toml::Table>(&format!("value = {written}"));
     let value = parsed.ok().and_then(|mut t| t.remove("value"));

@@ -162,6 +162,7 @@ fn carried(options: &Options) -> Result<(String, String), Error> {
         walk_seconds,
         quick,
         force,
+        allow_outside,
         baselines,
         out: _,
         jobs: _,
@@ -186,7 +187,9 @@ fn carried(options: &Options) -> Result<(String, String), Error> {
     let run = run.into_iter().chain(set.iter().map(|change| ("set", Some(change.clone()))));
     let report =
         [("baseline", baselines.baseline.clone()), ("save-baseline", baselines.save_baseline.clone())];
-    let flags = [("--quick", quick), ("--force", force)].into_iter().filter(|(_, is_set)| **is_set);
+    let flags = [("--quick", quick), ("--force", force), ("--allow-outside", allow_outside)]
+        .into_iter()
+        .filter(|(_, is_set)| **is_set);
     let flags: String = flags.map(|(flag, _)| format!(" {flag}")).collect();
     Ok((words(run)? + &flags, words(report)?))
 }

@@ -6,34 +6,28 @@ use crate::progress::Progress;
 use crate::run::pool;
 use crate::{HELD, INTERRUPTED, NOT_HELD, provenance};
 use anstream::println;
+use furnace::experiment::outcome::Outcome;
 use furnace::experiment::store::Store;
 use furnace::experiment::study::{Detection, Instrument, detect};
-use furnace::experiment::{Error, Plan};
+use furnace::experiment::{Error, Plan, file};
 use furnace::report::json::{Content, Object, Study};
 use furnace::report::overview::{self, Summary};
 use furnace::report::run::{self, Run};
 use furnace::report::study::{self, Studied};
 use furnace::stats::Verdict;
-use furnace::stats::nulls::NullRow;
-use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-
-/// What runs and synthetic laws have shown.
-#[derive(Serialize, Deserialize)]
-struct Outcome {
-    detections: Vec<Option<Detection>>,
-    nulls: Vec<NullRow>,
-    /// All of it is there.
-    whole: bool,
-}
 
 /// What a study keeps.
 const STUDY: &str = "study.json";
 
 /// Runs a study.
 pub fn one(source: &Source, plan: &Plan, options: &Options, stop: &AtomicBool) -> Result<u8, Error> {
+    if options.shard.is_some() || options.resume {
+        let why = "is a study: it has no journal to go on from, and is not cut into shards";
+        return Err(Error::Refused(format!("{} {why}", source.name)));
+    }
     let store = Store::open(&source.report_folder(options))?;
     let mut run = provenance::begin(source, plan, options);
     let (outcome, timing, seconds) = sample(plan, options, stop)?;
@@ -111,17 +105,11 @@ fn shown(detection: &Detection) -> String {
 pub fn report(source: &Source, plan: &Plan, options: &Options) -> Result<u8, Error> {
     let folder = source.report_folder(options);
     let path = folder.join(STUDY);
-    let text = std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?;
-    let damaged = |e: serde_json::Error| Error::Refused(format!("{} is damaged: {e}", path.display()));
-    let outcome: Outcome = serde_json::from_slice(&text).map_err(damaged)?;
-    if outcome.detections.len() != plan.cells.len() {
-        let why = format!("{} holds other cells than are planned now; run the study again", path.display());
-        return Err(Error::Refused(why));
-    }
+    let read = |path: &Path| file::bytes(path, file::STORED).map_err(|e| Error::io("cannot read", path, e));
+    let outcome = Outcome::parse(&path, &read(&path)?, plan)?;
     let store = Store::open(&folder)?;
-    for file in ["timing.csv", STUDY] {
-        let path = folder.join(file);
-        store.write(file, &std::fs::read(&path).map_err(|e| Error::io("cannot read", &path, e))?)?;
+    for name in ["timing.csv", STUDY] {
+        store.write(name, &read(&folder.join(name))?)?;
     }
     let held = write(plan, &outcome, &Run::read(&folder)?, &store)?;
     let folder = store.publish(None)?;

@@ -6,6 +6,7 @@ mod scene;
 
 pub use scene::scenes;
 
+use super::bounds;
 use super::input::Sweep;
 use super::spec::{EstimatorSpec, RouletteSpec, TechniqueSpec};
 use crate::estimator::{
@@ -120,6 +121,7 @@ pub fn estimators(spec: &EstimatorSpec, faults: bool) -> Result<Vec<Choice<Teste
     }
     let mut all = Vec::new();
     for name in name.as_slice() {
+        bounds::combinations(&[all.len().max(1)], "faults and sweeps")?;
         let fault = faults::find(name).ok_or_else(|| faults::unknown(name))?;
         let faulty = |c: Choice<Untermined>| {
             let label = format!("{} ({})", fault.name, c.label);
@@ -140,6 +142,7 @@ fn sound(spec: &EstimatorSpec) -> Result<Vec<Choice<Untermined>>, String> {
         EstimatorSpec::PhotonMap(spec) => photons::photon_map(spec)?,
         EstimatorSpec::Progressive(spec) => photons::progressive(spec)?,
         EstimatorSpec::Recursive { samples, depth, directions } => {
+            bounds::combinations(&[samples.0.len(), depth.0.len()], "samples and depth")?;
             let one = |n: (&'static str, f64, bool), d: (&'static str, f64, bool)| {
                 let value =
                     Untermined::Recursive { samples: n.1 as u32, depth: d.1 as u32, directions: *directions };

@@ -2,6 +2,7 @@
 
 use super::{Choice, Untermined, points};
 use crate::estimator::{DirectLight, Gather, Kernel, Last, PhotonMap, Roulette, Rule};
+use crate::experiment::bounds;
 use crate::experiment::spec::{LightTracingSpec, PhotonMapSpec, ProgressiveSpec};
 use crate::scene::Directions;
 
@@ -46,6 +47,7 @@ pub fn photon_map(spec: &PhotonMapSpec) -> Chosen {
             points("radius", radius).map(|p| (p, Gather::Within { radius: p.1 })).collect()
         }
     };
+    bounds::combinations(&[spec.photons.0.len(), gathers.len()], "photons and what is gathered")?;
     let mut all = Vec::new();
     for photons in points("photons", &spec.photons) {
         for &(point, gather) in &gathers {
@@ -66,6 +68,8 @@ pub fn progressive(spec: &ProgressiveSpec) -> Chosen {
     let mut details = kernel(spec.kernel);
     details.extend(direct(spec.direct));
     details.extend(uniform(spec.directions));
+    let counts = [&spec.photons, &spec.radius, &spec.alpha].map(|sweep| sweep.0.len());
+    bounds::combinations(&counts, "photons, radius and alpha")?;
     let mut all = Vec::new();
     for photons in points("photons", &spec.photons) {
         for radius in points("radius", &spec.radius) {

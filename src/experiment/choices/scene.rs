@@ -2,6 +2,7 @@
 
 use super::lecture::{self, caustic, dof, motion};
 use super::{Choice, points};
+use crate::experiment::bounds;
 use crate::experiment::input::Sweep;
 use crate::experiment::spec::{
     BsdfSpec, FlushSpec, FurnaceSpec, LooksAt, ManySpheresSpec, PrimitiveSpec, PrimitivesSpec, SceneSpec,
@@ -93,6 +94,10 @@ fn many_spheres(spec: &ManySpheresSpec) -> Vec<Choice<SceneKind>> {
 }
 
 fn integrating_sphere(s: &SphereSpec, light: (&'static str, f64, bool)) -> Result<Choice<SceneKind>, String> {
+    let (has, most) = (s.patches.len(), bounds::PATCHES);
+    if has > most {
+        return Err(format!("a sphere of {has} patches; at most {most} are followed from one to the next"));
+    }
     let patch = |fraction, albedo, emission| Patch { fraction, albedo, emission };
     let mut patches = vec![patch(light.1, s.light_albedo, s.emission)];
     patches.extend(s.patches.iter().map(|p| patch(p.fraction, p.albedo, p.emission)));

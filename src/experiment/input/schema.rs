@@ -1,6 +1,6 @@
 //! What the deserializers of this module take, as JSON schemas: as narrow as a schema can be, never narrower than they.
 
-use super::{MOST_SAMPLES, Named, Sweep, Tables};
+use super::{MOST_SAMPLES, MOST_SEEDS, Named, Sweep, Tables};
 use crate::faults;
 use crate::scene::many_spheres::COUNTS;
 use crate::stats::decay::MIN_RUNS;
@@ -70,6 +70,7 @@ schemas! {
     counts: swept(whole(0, 1000));
     positive_counts: swept(whole(1, 1000));
     optional_count: whole(1, 1_000_000_000);
+    optional_seeds: whole(1, MOST_SEEDS as f64);
     runs: whole(MIN_RUNS as f64, 1_000_000);
     bounces: whole(0, 1000);
     optional_bounces: whole(0, 1000);

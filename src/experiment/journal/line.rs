@@ -16,7 +16,7 @@ pub enum Line<'a> {
         cell: usize,
         /// Their numbers.
         numbers: Range<u64>,
-        /// What they are, escaped; see [`unescape`].
+        /// What they are; in a line that was read still escaped, see [`unescape`].
         bytes: &'a [u8],
     },
     /// A block that could not be made.
@@ -34,7 +34,7 @@ const DIGITS: usize = 8;
 const ESCAPE: u8 = 0x1b;
 
 impl<'a> Line<'a> {
-    /// The line with its checksum and its end. The bytes of blocks are written as they are: see [`escape`].
+    /// The line with its checksum and its end; the bytes of blocks are escaped on the way.
     pub fn write(&self, to: &mut Vec<u8>) {
         let start = to.len();
         to.extend([b'0'; DIGITS]);
@@ -51,7 +51,7 @@ impl<'a> Line<'a> {
         to.extend(text.as_bytes());
         match self {
             Line::Header(json) => to.extend(*json),
-            Line::Blocks { bytes, .. } => to.extend(*bytes),
+            Line::Blocks { bytes, .. } => escape(bytes, to),
             _ => {}
         }
         let sum = crc32fast::hash(&to[start + DIGITS..]);
@@ -108,7 +108,7 @@ fn number(text: &[u8]) -> Option<(u64, &[u8])> {
 }
 
 /// Appends bytes so that none of them ends a line.
-pub fn escape(bytes: &[u8], to: &mut Vec<u8>) {
+fn escape(bytes: &[u8], to: &mut Vec<u8>) {
     to.reserve(bytes.len() + bytes.len() / 64);
     let mut rest = bytes;
     while let Some(at) = memchr::memchr2(b'\n', ESCAPE, rest) {
@@ -164,7 +164,7 @@ mod tests {
         let failure = Failure { block: 7, why: "a \"word\"\nand another".to_owned() };
         for line in [
             Line::Header(b"{}"),
-            Line::Blocks { cell: 3, numbers: 80..96, bytes: b" any \x00\xff" },
+            Line::Blocks { cell: 3, numbers: 80..96, bytes: b" none \x00\xff" },
             Line::Failed(2, failure),
             Line::Seconds(1, 0.125),
             Line::End,

@@ -14,7 +14,7 @@ mod write;
 pub use header::{Header, OfCell};
 pub use kept::{Found, Kept, Overlap, expected};
 pub use line::Line;
-pub use scan::{Damage, Scan, scan};
+pub use scan::{Damage, Scan, scan, scan_all};
 pub use write::{Journal, Start, is_written};
 
 use super::error::Error;

@@ -4,6 +4,7 @@ use super::header::Header;
 use super::line::Line;
 use crate::experiment::error::Error;
 use crate::experiment::guard::Failure;
+use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Take};
 use std::ops::Range;
@@ -131,6 +132,15 @@ pub fn scan(path: &Path) -> Result<Scan, Error> {
     }
     scan.damage.torn = offset - scan.damage.end;
     Ok(scan)
+}
+
+/// Reads several journals, a thread each as far as there are processors.
+///
+/// # Errors
+///
+/// The first one of [`scan`].
+pub fn scan_all(paths: &[PathBuf]) -> Result<Vec<Scan>, Error> {
+    paths.par_iter().map(|path| scan(path)).collect()
 }
 
 /// The next line, or as much of it as there may be.

@@ -2,7 +2,7 @@
 
 use super::header::Header;
 use super::kept::Kept;
-use super::line::{Line, escape};
+use super::line::Line;
 use super::scan::scan;
 use crate::experiment::error::Error;
 use crate::experiment::guard::Failure;
@@ -125,18 +125,16 @@ impl Journal {
         self.flush()
     }
 
-    /// Appends the blocks `numbers` of a cell, whose records are given.
+    /// Appends the blocks `numbers` of a cell, whose records are given, and to which their pixels are added.
     pub fn blocks(
         &mut self,
         cell: usize,
         numbers: Range<u64>,
-        mut records: Vec<u8>,
+        records: &mut Vec<u8>,
         unit: &Unit,
     ) -> Result<(), Error> {
-        unit.write_pixels(&mut records);
-        let mut escaped = Vec::new();
-        escape(&records, &mut escaped);
-        Line::Blocks { cell, numbers, bytes: &escaped }.write(&mut self.waiting);
+        unit.write_pixels(records);
+        Line::Blocks { cell, numbers, bytes: records }.write(&mut self.waiting);
         self.flush_if_due()
     }
 

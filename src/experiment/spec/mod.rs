@@ -42,8 +42,8 @@ pub struct Spec {
     pub faults: bool,
     /// So many times each cell is run and judged on its own, with a seed each: not what is right is asked then, but how
     /// often the instruments say so.
-    #[serde(default, deserialize_with = "input::optional_count")]
-    #[schemars(schema_with = "schema::optional_count")]
+    #[serde(default, deserialize_with = "input::optional_seeds")]
+    #[schemars(schema_with = "schema::optional_seeds")]
     pub seeds: Option<u32>,
     /// Whether cells share their random numbers.
     #[serde(default)]
@@ -66,16 +66,16 @@ pub struct Spec {
     /// What is run: every combination within each grid.
     pub grid: Tables<Grid>,
     /// Stored images that scenes are compared with.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "input::tables")]
     pub reference: Vec<ReferenceSpec>,
     /// Samples of known laws, on which the instruments themselves are measured.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "input::tables")]
     pub null: Vec<NullSpec>,
     /// What is claimed of the cells.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "input::tables")]
     pub claim: Vec<Claim>,
     /// What is drawn.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "input::tables")]
     pub plot: Vec<Plot>,
 }
 
@@ -135,7 +135,7 @@ pub struct ReferenceSpec {
     /// What the scene is called in results.
     #[schemars(with = "String")]
     pub scene: Spanned<String>,
-    /// An EXR file, relative to the experiment file.
+    /// An EXR file, relative to the experiment file and in the folder of its project.
     #[schemars(with = "String")]
     pub file: Spanned<PathBuf>,
     /// Bound on the relative systematic error of tiles, such as that of a renderer in single precision.

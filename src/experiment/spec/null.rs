@@ -1,5 +1,6 @@
 //! Synthetic samples of known mean, on which an experiment measures how often the instruments err.
 
+use crate::experiment::bounds;
 use crate::experiment::input::{Sweep, schema};
 use crate::stats::nulls::{self, Law, NullRow, Setting};
 use schemars::JsonSchema;
@@ -81,6 +82,8 @@ fn listed<'de, D: Deserializer<'de>>(
     holds: impl Fn(f64) -> bool,
 ) -> Result<Vec<f64>, D::Error> {
     let Sweep(values) = Sweep::deserialize(d)?;
+    let (has, most) = (values.len(), bounds::LISTED);
+    check(has <= most, format!("a list of {has}"), &format!("at most {most} numbers"))?;
     for (i, &v) in values.iter().enumerate() {
         check(holds(v), v, wanted)?;
         if values[..i].contains(&v) {

@@ -75,6 +75,9 @@ pub struct Options {
     /// Only this block of each cell, from 0, on one thread: shows what went wrong in it. Writes nothing
     #[arg(long, value_name = "N", conflicts_with_all = ["shard", "claims", "resume", "fresh"])]
     pub block: Option<u64>,
+    /// Read references also from outside the folder of the experiment file's project
+    #[arg(long, global = true)]
+    pub allow_outside: bool,
 }
 
 impl Options {
@@ -89,6 +92,15 @@ impl Options {
             quick: self.quick,
             force: self.force,
             walk_seconds: self.walk_seconds,
+            allow_outside: self.allow_outside,
+        }
+    }
+
+    /// The threads that there will be.
+    pub fn threads(&self) -> usize {
+        match self.jobs {
+            0 => std::thread::available_parallelism().map_or(1, usize::from),
+            jobs => jobs.into(),
         }
     }
 
