@@ -64,7 +64,7 @@ const FAULTS: [Case; 4] = [
         "{ fault = { name = \"roulette_off\" } }",
         "estimators with a mistake are for files that say `faults = true`",
     ),
-    ("seeds = 0", "0", "a whole number from 1 to 10^9"),
+    ("seeds = 0", "0", "a whole number of seeds from 1 to 10^6"),
     ("claim = [{ length = { alpha = 1.5 } }]", "1.5", "it lies inside (0, 1)"),
     (
         "claim = [{ independent = { margin = 0.1 } }]",
