@@ -111,7 +111,7 @@ fn work_and_memory() {
         ("{ light_tracing = { particles = 100_000_000 } }", "100000000 particles may land"),
     ] {
         let estimator = format!("estimator = [{estimator}]");
-        refused(&[scene.clone(), estimator], &["large.toml:5:14", words, "at most 3e7"]);
+        refused(&[scene.clone(), estimator], &["large.toml:5:14", words, "at most 1e8"]);
     }
     let images = "scene = [{ cornell_box = { resolution = 4096 } }]".to_owned();
     let clamps = format!("roulette = [{{ depth_clamp = {{ bounces = {} }} }}]", depths(9));
@@ -218,7 +218,7 @@ fn images_that_promise_more_than_they_hold() {
     assert!(words(16, 4096).contains("promises 1073741824 bytes of pixels"), "{}", words(16, 4096));
     assert!(words(65, 8).contains("65 channels, and at most 64"), "{}", words(65, 8));
     assert!(words(1, 4097).contains("at most 4096 pixels along each edge"), "{}", words(1, 4097));
-    assert!(words(1, i32::MAX).contains("pixels along each edge"), "{}", words(1, i32::MAX));
+    assert!(words(1, i32::MAX).contains("window"), "{}", words(1, i32::MAX));
     // without its pixels a small one is not whole
     assert!(!words(6, 8).contains("promises"), "{}", words(6, 8));
 }

@@ -19,8 +19,8 @@ pub const PATCHES: usize = 100;
 /// Surfaces and lights in all scenes of a file together: those built, and those that cells keep a copy of.
 pub const SURFACES: usize = 4_000_000;
 
-/// Photons that one map may be expected to hold, or marks that particles leave in one picture: about 3 GB.
-const LANDED: f64 = 3e7;
+/// Photons that one map may be expected to hold, or marks that particles leave in one picture: about 10 GB at worst.
+const LANDED: f64 = 1e8;
 
 /// Pixels of all images of an experiment together; each keeps a mean and a variance a channel until the report is written.
 const PIXELS: u64 = 1 << 27;

@@ -39,6 +39,8 @@ pub struct Resolved {
     pub swept: Vec<String>,
     /// Surfaces of the scenes that were built, and those that cells keep a copy of.
     surfaces: [usize; 2],
+    /// Surfaces that scenes are told to have.
+    named: usize,
 }
 
 /// All that the file asks for.
@@ -80,6 +82,11 @@ fn grid_cells(
     bounds::combinations(&counts, of)
         .and_then(|()| bounds::combinations(&[before + counts.iter().product::<usize>()], "all grids"))
         .map_err(|e| at(grid.scene.span(), e))?;
+    for scene in &scenes {
+        // what is known of a scene before it takes time to build it
+        resolved.named += scene.choice.value.named();
+        bounds::surfaces(resolved.named, "scenes have").map_err(|e| at(scene.span.clone(), e))?;
+    }
     for scene in &scenes {
         let built = scene.choice.value.build();
         let written = scene.choice.value.written() * estimators.len() * roulettes.len();

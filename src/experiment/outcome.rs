@@ -28,6 +28,9 @@ impl Outcome {
         let refused = |why: String| Error::Refused(format!("{} {why}", file.display()));
         let outcome: Outcome =
             serde_json::from_slice(text).map_err(|e| refused(format!("is damaged: {e}")))?;
+        if !outcome.detections.iter().flatten().all(Detection::is_whole) {
+            return Err(refused("is damaged: lists are too short, or counts too large".to_owned()));
+        }
         if outcome.detections.len() != plan.cells.len() {
             return Err(refused("holds other cells than are planned now; run the study again".to_owned()));
         }

@@ -111,6 +111,14 @@ fn null_is_nan<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<[f64
 }
 
 impl Detection {
+    /// Whether each instrument has its count, and none found more than there was.
+    pub fn is_whole(&self) -> bool {
+        let is_possible = |found: &u64| *found <= self.seeds;
+        self.seeds > 0
+            && self.found.len() == Instrument::ALL.len()
+            && self.found.iter().flatten().all(is_possible)
+    }
+
     /// How often an instrument found something, with its 99 % interval [Clopper & Pearson 1934].
     pub fn share(&self, instrument: Instrument) -> Option<(f64, f64, f64)> {
         let at = Instrument::ALL.iter().position(|i| *i == instrument)?;

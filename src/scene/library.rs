@@ -142,6 +142,14 @@ impl SceneKind {
         }
     }
 
+    /// Surfaces that it is told to have, or one.
+    pub fn named(&self) -> usize {
+        match self {
+            SceneKind::ManySpheres { count, .. } => *count as usize,
+            _ => self.written().max(1),
+        }
+    }
+
     /// Builds the scene.
     pub fn build(&self) -> Scene {
         match self {
