@@ -59,6 +59,35 @@ pub fn resolve(spec: &Spec, file: &Path, source: &str) -> Result<Resolved, Error
 }
 
 impl Resolved {
+    /// Counts the cells of a grid, before they are made.
+    fn makes(&self, counts: &[usize]) -> Result<(), String> {
+        let before = self.cells.len() + self.left_out.len();
+        bounds::combinations(counts, "scenes, estimators and termination rules")?;
+        bounds::combinations(&[before + counts.iter().product::<usize>()], "all grids")
+    }
+
+    /// Counts what is known of a scene before it takes time to build it.
+    fn names(&mut self, scene: &Written<SceneKind>) -> Result<(), (Range<usize>, String)> {
+        self.named += scene.choice.value.named();
+        bounds::surfaces(self.named, "scenes have").map_err(|e| (scene.span.clone(), e))
+    }
+
+    /// Counts the surfaces of a scene, of which each cell keeps what the file wrote out.
+    fn holds(&mut self, scene: &SceneKind, built: &Scene, copies: usize) -> Result<(), String> {
+        self.surfaces[0] += built.surfaces().len();
+        self.surfaces[1] = self.surfaces[1].saturating_add(scene.written() * copies);
+        bounds::surfaces(self.surfaces[0], "scenes have")?;
+        bounds::surfaces(self.surfaces[1], "cells keep a copy of")
+    }
+
+    /// Takes a cell, or leaves it out where it cannot work.
+    fn take(&mut self, cell: CellPlan, built: &Scene) {
+        match reach::out_of(&cell, built) {
+            Some(why) => self.left_out.push(LeftOut { cell, why }),
+            None => self.cells.push(cell),
+        }
+    }
+
     /// Notes that a parameter is swept.
     fn sweeps(&mut self, name: &str) {
         if !self.swept.iter().any(|swept| swept == name) {
@@ -76,42 +105,28 @@ fn grid_cells(
     let scenes = axis(&grid.scene, "scenes", at, choices::scenes)?;
     let estimators = axis(&grid.estimator, "estimators", at, |s| choices::estimators(s, spec.faults))?;
     let roulettes = axis(&grid.roulette, "termination rules", at, |s| Ok(choices::roulettes(s)))?;
-    let before = resolved.cells.len() + resolved.left_out.len();
     let counts = [scenes.len(), estimators.len(), roulettes.len()];
-    let of = "scenes, estimators and termination rules";
-    bounds::combinations(&counts, of)
-        .and_then(|()| bounds::combinations(&[before + counts.iter().product::<usize>()], "all grids"))
-        .map_err(|e| at(grid.scene.span(), e))?;
-    for scene in &scenes {
-        // what is known of a scene before it takes time to build it
-        resolved.named += scene.choice.value.named();
-        bounds::surfaces(resolved.named, "scenes have").map_err(|e| at(scene.span.clone(), e))?;
-    }
+    resolved.makes(&counts).map_err(|e| at(grid.scene.span(), e))?;
+    scenes.iter().try_for_each(|scene| resolved.names(scene)).map_err(|(span, e)| at(span, e))?;
     for scene in &scenes {
         let built = scene.choice.value.build();
-        let written = scene.choice.value.written() * estimators.len() * roulettes.len();
-        resolved.surfaces[0] += built.surfaces().len();
-        resolved.surfaces[1] = resolved.surfaces[1].saturating_add(written);
-        bounds::surfaces(resolved.surfaces[0], "scenes have")
-            .and_then(|()| bounds::surfaces(resolved.surfaces[1], "cells keep a copy of"))
-            .map_err(|e| at(scene.span.clone(), e))?;
+        let held = resolved.holds(&scene.choice.value, &built, counts[1] * counts[2]);
+        held.map_err(|e| at(scene.span.clone(), e))?;
         let seen = LazyCell::new(|| reach::sees_smooth(&built));
         for estimator in &estimators {
             for roulette in &roulettes {
                 let (untermined, fault) = estimator.choice.value;
                 let whole = untermined.with(roulette.choice.value, pixels(&built));
-                lit(&whole, &built).map_err(|e| at(scene.span.clone(), e))?;
-                ends(&whole, &built).map_err(|e| at(roulette.span.clone(), e))?;
-                bounds::landed(&whole, ray_bound(&whole, &built))
-                    .map_err(|e| at(estimator.span.clone(), e))?;
-                let run = runs::realizations(spec, grid, &whole, &estimator.span)
+                let run = can_run(&whole, &built, [&scene.span, &estimator.span, &roulette.span])
+                    .and_then(|()| runs::realizations(spec, grid, &whole, &estimator.span))
                     .map_err(|(span, message)| at(span, message))?;
                 let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
                     .into_iter()
                     .flatten();
-                for &(name, ..) in params.clone().filter(|(.., is_swept)| *is_swept) {
-                    resolved.sweeps(name);
-                }
+                params
+                    .clone()
+                    .filter(|(.., is_swept)| *is_swept)
+                    .for_each(|(name, ..)| resolved.sweeps(name));
                 let cell = CellPlan {
                     scene: scene.choice.value.clone(),
                     scene_label: scene.choice.label.clone(),
@@ -120,10 +135,7 @@ fn grid_cells(
                     estimator_label: estimator.choice.label.clone(),
                     roulette_label: roulette.choice.label.clone(),
                     params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
-                    core: match fault {
-                        None => spec.core.if_offered(&built, &whole),
-                        Some(_) => Core::Textbook,
-                    },
+                    core: core(spec, fault, &built, &whole),
                     samples: grid.samples.unwrap_or(spec.samples),
                     block: run.unwrap_or(0),
                     traced: run.is_some(),
@@ -138,14 +150,28 @@ fn grid_cells(
                     studied: false,
                     patience: PATIENCE,
                 };
-                match reach::out_of(&cell, &built) {
-                    Some(why) => resolved.left_out.push(LeftOut { cell, why }),
-                    None => resolved.cells.push(cell),
-                }
+                resolved.take(cell, &built);
             }
         }
     }
     Ok(())
+}
+
+/// What follows the paths of a cell: mistakes are known to the textbook only.
+fn core(spec: &Spec, fault: Option<&Fault>, built: &Scene, whole: &Estimator) -> Core {
+    if fault.is_some() { Core::Textbook } else { spec.core.if_offered(built, whole) }
+}
+
+/// Whether a walk in a scene finds light, ends, and takes no more memory than there may be; if not, which of the spans of
+/// scene, estimator and rule is wrong, and why.
+fn can_run(
+    whole: &Estimator,
+    built: &Scene,
+    [scene, estimator, roulette]: [&Range<usize>; 3],
+) -> Result<(), (Range<usize>, String)> {
+    lit(whole, built).map_err(|e| (scene.clone(), e))?;
+    ends(whole, built).map_err(|e| (roulette.clone(), e))?;
+    bounds::landed(whole, ray_bound(whole, built)).map_err(|e| (estimator.clone(), e))
 }
 
 /// The choices of one axis of the grid, their sweeps written out.
