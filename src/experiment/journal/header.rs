@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub struct Header {
     /// Version of this program.
     pub version: String,
-    /// Of the sources that sample, see [`SOURCES`].
+    /// Of the sources that sample, see `SOURCES`.
     pub sources: String,
     /// The part of the run.
     pub shard: Shard,

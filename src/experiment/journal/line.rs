@@ -16,7 +16,7 @@ pub enum Line<'a> {
         cell: usize,
         /// Their numbers.
         numbers: Range<u64>,
-        /// What they are; in a line that was read still escaped, see [`unescape`].
+        /// What they are; in a line that was read still escaped, see `unescape`.
         bytes: &'a [u8],
     },
     /// A block that could not be made.
