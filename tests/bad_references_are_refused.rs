@@ -6,7 +6,10 @@ use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, Layer, LayerAttributes,
     WritableImage, f16,
 };
-use furnace::scene::Rgb;
+use furnace::estimator::{Estimator, Implicit, Roulette, Rule};
+use furnace::experiment::making;
+use furnace::scene::library::SceneKind;
+use furnace::scene::{Directions, Rgb};
 use furnace::truth::layers::Layers;
 use furnace::truth::{BadReference, Reference};
 use std::fs;
@@ -189,4 +192,21 @@ fn errors_stand_where_the_file_names_the_image() {
         assert!(stderr.contains("experiments/x.toml:") && !stderr.contains("panicked"), "{new}: {stderr}");
         words.iter().for_each(|word| assert!(stderr.contains(word), "{new}: `{word}` is missing: {stderr}"));
     }
+}
+
+#[test]
+fn one_of_another_size_is_not_continued() {
+    let scene = SceneKind::CornellEmpty { resolution: 8 };
+    let directions = Directions::Cosine;
+    let roulette = Roulette::unclamped(Rule::Constant { q: 0.5 });
+    let estimator = Estimator::Implicit(Implicit { directions, roulette });
+    let wanted = making::begin(&scene, &estimator, 1).unwrap();
+    let mut other = wanted.clone();
+    (other.size, other.mean, other.m2) = (4, vec![Rgb::ONE; 16], vec![Rgb::ONE; 16]);
+    other.provenance.samples = 2;
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("own.exr");
+    making::save(&path, &other).unwrap();
+    let error = making::resume(&path, wanted).unwrap_err().to_string();
+    assert!(error.contains("it has 4 pixels along each edge, not 8"), "{error}");
 }

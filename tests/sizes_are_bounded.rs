@@ -41,7 +41,7 @@ fn refused(lines: &[String], words: &[&str]) {
     let error = planned(&with(lines), &Overrides::default()).expect_err("it should be refused").to_string();
     words.iter().for_each(|word| assert!(error.contains(word), "`{word}` is missing: {error}"));
     assert!(error.len() < 6000, "{} bytes of error", error.len());
-    assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+    assert!(begun.elapsed() < Duration::from_secs(60), "{:?}", begun.elapsed());
 }
 
 fn line(text: &str) -> Vec<String> {
@@ -163,7 +163,7 @@ fn what_is_large_and_makes_sense() {
     ];
     let begun = Instant::now();
     assert_eq!(planned(&with(&grid), &Overrides::default()).unwrap().cells.len(), 12_000);
-    assert!(begun.elapsed() < Duration::from_secs(60), "{:?}", begun.elapsed());
+    assert!(begun.elapsed() < Duration::from_secs(120), "{:?}", begun.elapsed());
     let whole = |lines: &[&str]| {
         let lines: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
         planned(&with(&lines), &Overrides::default()).map(drop).unwrap_or_else(|e| panic!("{e}"));

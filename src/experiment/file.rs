@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// Bytes of an experiment file, at most: what people write.
-pub const WRITTEN: u64 = 16 << 20;
+pub const WRITTEN: u64 = 8 << 20;
 
 /// Bytes of results and images, at most: what programs write.
 pub const STORED: u64 = 2 << 30;

@@ -64,7 +64,7 @@ pub fn summary(bytes: &[u8]) {
     let empty = Summary { experiment: "small".to_owned(), ..summary };
     let page = overview::overview(&[empty]);
     let card = page.split("<article").nth(1).expect("a card").split("</article").next().unwrap_or_default();
-    assert!(!card.contains("<script") && !card.contains("src=\"http"), "{card}");
+    assert!(!card.contains("<script") && !card.contains("/.."), "{card}");
 }
 
 /// A stored baseline: what is taken can be compared with, and is unchanged beside itself.
