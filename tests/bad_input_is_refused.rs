@@ -73,7 +73,8 @@ const FAULTS: [Case; 4] = [
     ),
 ];
 
-const NUMBERS: [Case; 32] = [
+const NUMBERS: [Case; 33] = [
+    ("block = 10", "10", "a whole number of paths from 64 to 2^30"),
     ("samples = 0", "0", "at least 1 sample is needed"),
     ("samples = -5", "-5", "at least 1 sample is needed"),
     ("max_samples = 0", "0", "at least 1 sample is needed"),

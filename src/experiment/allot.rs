@@ -9,7 +9,7 @@ use super::stakes;
 use super::study;
 use crate::truth::{ClosedForm, Counted, Known};
 
-/// Paths a block, at most.
+/// Paths a block, at most, where the file says nothing.
 const BLOCK_PATHS: u64 = 4096;
 
 /// Blocks a cell, at least, if it has the samples.
@@ -49,8 +49,9 @@ impl Plan {
     }
 
     /// Blocks a cell, at least, if it has the samples: many, or the t quantile is large.
-    fn blocks(&self) -> u64 {
-        if self.spec.seeds.is_some() { study::BLOCKS } else { MIN_BLOCKS }
+    fn blocks(&self) -> Blocks {
+        let least = if self.spec.seeds.is_some() { study::BLOCKS } else { MIN_BLOCKS };
+        Blocks { least, paths: self.spec.block.unwrap_or(BLOCK_PATHS) }
     }
 
     /// What `--samples` must say for a cell to get the samples and blocks that it has.
@@ -64,10 +65,19 @@ impl Plan {
     }
 }
 
+/// How samples are cut.
+#[derive(Clone, Copy)]
+struct Blocks {
+    /// As many, at least, if there are the samples.
+    least: u64,
+    /// Paths of one, at most.
+    paths: u64,
+}
+
 /// About so many samples of an image of so many pixels in whole blocks: their number, and that of a block.
-fn whole_blocks(samples: u64, pixels: u64, blocks: u64) -> (u64, u64) {
+fn whole_blocks(samples: u64, pixels: u64, blocks: Blocks) -> (u64, u64) {
     // two passes at least, whose difference shows a pixel's variance
-    let block = (samples / blocks).min(BLOCK_PATHS / pixels).max(2);
+    let block = (samples / blocks.least).min(blocks.paths / pixels).max(2);
     // two blocks at least, or there is no standard error
     (samples.div_ceil(block).max(2) * block, block)
 }
@@ -102,18 +112,24 @@ mod tests {
 
     #[test]
     fn samples_can_be_asked_for_again() {
-        for (pixels, blocks) in
-            [(1, MIN_BLOCKS), (1, study::BLOCKS), (256, MIN_BLOCKS), (1 << 14, MIN_BLOCKS)]
-        {
+        let paths = BLOCK_PATHS;
+        let few = Blocks { least: MIN_BLOCKS, paths };
+        for (pixels, blocks) in [
+            (1, few),
+            (1, Blocks { least: study::BLOCKS, paths }),
+            (256, few),
+            (1 << 14, few),
+            (1, Blocks { paths: 1 << 20, ..few }),
+        ] {
             for asked in (1..3000).chain([100_000, 1_048_576, 1_048_577, 67_108_863]) {
                 let (samples, block) = whole_blocks(asked, pixels, blocks);
                 let least = (samples + 1).saturating_sub(block).max(1);
                 let again = |&n: &u64| whole_blocks(n, pixels, blocks) == (samples, block);
                 let found = (least..=samples).rev().find(again);
-                assert!(found.is_some(), "{asked} samples of {pixels} pixels in {blocks} blocks");
+                assert!(found.is_some(), "{asked} samples of {pixels} pixels in {} blocks", blocks.least);
             }
         }
         // not all numbers of samples would do
-        assert_ne!(whole_blocks(191, 1, 64), whole_blocks(192, 1, 64));
+        assert_ne!(whole_blocks(191, 1, few), whole_blocks(192, 1, few));
     }
 }

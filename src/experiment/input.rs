@@ -204,6 +204,13 @@ pub fn tables<'de, D: Deserializer<'de>, T: Deserialize<'de>>(d: D) -> Result<Ve
     Ok(tables)
 }
 
+/// Paths of a block.
+pub fn optional_block<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u64>, D::Error> {
+    let v = i64::deserialize(d)?;
+    check((64..=1 << 30).contains(&v), v, "a whole number of paths from 64 to 2^30")?;
+    Ok(Some(v as u64))
+}
+
 /// Seeds of a study.
 pub fn optional_seeds<'de, D: Deserializer<'de>>(d: D) -> Result<Option<u32>, D::Error> {
     let v = i64::deserialize(d)?;

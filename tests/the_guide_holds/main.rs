@@ -122,11 +122,13 @@ hold! {
     baselines: "docs/src/baselines.md",
     figures: "docs/src/figures.md",
     ci: "docs/src/ci.md",
+    resume: "docs/src/resume.md",
     cluster: "docs/src/cluster.md",
     json: "docs/src/json.md",
     input: "docs/src/input.md",
     verdicts: "docs/src/verdicts.md",
     performance: "docs/src/performance.md",
+    scale: "docs/src/scale.md",
     cornell_flush: "docs/src/cornell_flush.md",
     glossary: "docs/src/glossary.md",
 }

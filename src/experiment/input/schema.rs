@@ -71,6 +71,7 @@ schemas! {
     positive_counts: swept(whole(1, 1000));
     optional_count: whole(1, 1_000_000_000);
     optional_seeds: whole(1, MOST_SEEDS as f64);
+    optional_block: whole(64, (1_u64 << 30) as f64);
     runs: whole(MIN_RUNS as f64, 1_000_000);
     bounces: whole(0, 1000);
     optional_bounces: whole(0, 1000);

@@ -59,6 +59,10 @@ pub struct Spec {
     #[serde(default, deserialize_with = "input::optional_samples")]
     #[schemars(schema_with = "schema::optional_samples")]
     pub max_samples: Option<u64>,
+    /// Paths of a block, at most: fewer and larger ones make journals of very many samples small.
+    #[serde(default, deserialize_with = "input::optional_block")]
+    #[schemars(schema_with = "schema::optional_block")]
+    pub block: Option<u64>,
     /// Each cell's samples are cut into so many runs, whose means are looked at as they grow.
     #[serde(default)]
     #[schemars(schema_with = "schema::runs")]
