@@ -37,10 +37,10 @@ pub struct Resolved {
     pub left_out: Vec<LeftOut>,
     /// Names of the swept parameters.
     pub swept: Vec<String>,
-    /// Surfaces of the scenes that were built, and those that cells keep a copy of.
-    surfaces: [usize; 2],
-    /// Surfaces that scenes are told to have.
+    /// Surfaces that scenes are told to have, that they were built of, and that cells keep a copy of.
     named: usize,
+    built: usize,
+    copied: usize,
 }
 
 /// All that the file asks for.
@@ -67,25 +67,12 @@ fn grid_cells(
     let scenes = axis(&grid.scene, "scenes", at, choices::scenes)?;
     let estimators = axis(&grid.estimator, "estimators", at, |s| choices::estimators(s, spec.faults))?;
     let roulettes = axis(&grid.roulette, "termination rules", at, |s| Ok(choices::roulettes(s)))?;
-    let before = resolved.cells.len() + resolved.left_out.len();
-    let counts = [scenes.len(), estimators.len(), roulettes.len()];
-    let of = "scenes, estimators and termination rules";
-    bounds::combinations(&counts, of)
-        .and_then(|()| bounds::combinations(&[before + counts.iter().product::<usize>()], "all grids"))
-        .map_err(|e| at(grid.scene.span(), e))?;
-    for scene in &scenes {
-        // what is known of a scene before it takes time to build it
-        resolved.named += scene.choice.value.named();
-        bounds::surfaces(resolved.named, "scenes have").map_err(|e| at(scene.span.clone(), e))?;
-    }
+    let combined = [estimators.len(), roulettes.len()];
+    fits(grid, &scenes, combined, at, resolved)?;
     for scene in &scenes {
         let built = scene.choice.value.build();
-        let written = scene.choice.value.written() * estimators.len() * roulettes.len();
-        resolved.surfaces[0] += built.surfaces().len();
-        resolved.surfaces[1] = resolved.surfaces[1].saturating_add(written);
-        bounds::surfaces(resolved.surfaces[0], "scenes have")
-            .and_then(|()| bounds::surfaces(resolved.surfaces[1], "cells keep a copy of"))
-            .map_err(|e| at(scene.span.clone(), e))?;
+        resolved.built += built.surfaces().len();
+        bounds::surfaces(resolved.built, "scenes have").map_err(|e| at(scene.span.clone(), e))?;
         let seen = LazyCell::new(|| reach::sees_smooth(&built));
         for estimator in &estimators {
             for roulette in &roulettes {
@@ -97,38 +84,14 @@ fn grid_cells(
                     .map_err(|e| at(estimator.span.clone(), e))?;
                 let run = runs::realizations(spec, grid, &whole, &estimator.span)
                     .map_err(|(span, message)| at(span, message))?;
-                let params = [&scene.choice.params, &estimator.choice.params, &roulette.choice.params]
-                    .into_iter()
-                    .flatten();
-                for &(name, _, is_swept) in params.clone() {
-                    if is_swept && !resolved.swept.iter().any(|s| s == name) {
+                let point =
+                    Point { scene: &scene.choice, estimator: &estimator.choice, roulette: &roulette.choice };
+                for name in point.params().filter(|param| param.2).map(|param| param.0) {
+                    if !resolved.swept.iter().any(|s| s == name) {
                         resolved.swept.push(name.to_owned());
                     }
                 }
-                let cell = CellPlan {
-                    scene: scene.choice.value.clone(),
-                    scene_label: scene.choice.label.clone(),
-                    estimator: whole,
-                    fault,
-                    estimator_label: estimator.choice.label.clone(),
-                    roulette_label: roulette.choice.label.clone(),
-                    params: params.map(|&(name, value, _)| (name.to_owned(), value)).collect(),
-                    core: match fault {
-                        None => spec.core.if_offered(&built, &whole),
-                        Some(_) => Core::Textbook,
-                    },
-                    samples: grid.samples.unwrap_or(spec.samples),
-                    block: run.unwrap_or(0),
-                    traced: run.is_some(),
-                    runs: 1,
-                    pixels: pixels(&built),
-                    rays: rays(&scene.choice.value, &built, &whole),
-                    finds_all: reach::finds_all(&whole, &built, || *seen),
-                    address: address(spec, &scene.choice.value, &whole, fault),
-                    paired: spec.streams == Streams::Paired,
-                    streams: Vec::new(),
-                    may_stop: false,
-                };
+                let cell = point.cell(spec, grid, &built, (whole, fault), run, || *seen);
                 match reach::out_of(&cell, &built) {
                     Some(why) => resolved.left_out.push(LeftOut { cell, why }),
                     None => resolved.cells.push(cell),
@@ -137,6 +100,82 @@ fn grid_cells(
         }
     }
     Ok(())
+}
+
+/// Refuses a grid of too many cells, or of scenes that are too large, before it takes time and memory.
+fn fits(
+    grid: &Grid,
+    scenes: &[Written<SceneKind>],
+    combined: [usize; 2],
+    at: &dyn Fn(Range<usize>, String) -> Error,
+    resolved: &mut Resolved,
+) -> Result<(), Error> {
+    let counts = [scenes.len(), combined[0], combined[1]];
+    bounds::combinations(&counts, "scenes, estimators and termination rules")
+        .and_then(|()| {
+            let before = resolved.cells.len() + resolved.left_out.len();
+            bounds::combinations(&[before + counts.iter().product::<usize>()], "all grids")
+        })
+        .map_err(|e| at(grid.scene.span(), e))?;
+    for scene in scenes {
+        let kind = &scene.choice.value;
+        resolved.named += kind.named();
+        resolved.copied += kind.written() * combined[0] * combined[1];
+        bounds::surfaces(resolved.named, "scenes have")
+            .and_then(|()| bounds::surfaces(resolved.copied, "cells keep a copy of"))
+            .map_err(|e| at(scene.span.clone(), e))?;
+    }
+    Ok(())
+}
+
+/// One value of each axis.
+struct Point<'a> {
+    scene: &'a Choice<SceneKind>,
+    estimator: &'a Choice<choices::Tested>,
+    roulette: &'a Choice<Roulette>,
+}
+
+impl Point<'_> {
+    /// Numeric parameters: name, value, and whether it is swept.
+    fn params(&self) -> impl Iterator<Item = (&'static str, f64, bool)> {
+        [&self.scene.params, &self.estimator.params, &self.roulette.params].into_iter().flatten().copied()
+    }
+
+    fn cell(
+        &self,
+        spec: &Spec,
+        grid: &Grid,
+        built: &Scene,
+        (whole, fault): (Estimator, Option<&'static Fault>),
+        run: Option<u64>,
+        sees_smooth: impl Fn() -> bool,
+    ) -> CellPlan {
+        let scene = &self.scene.value;
+        CellPlan {
+            scene: scene.clone(),
+            scene_label: self.scene.label.clone(),
+            estimator: whole,
+            fault,
+            estimator_label: self.estimator.label.clone(),
+            roulette_label: self.roulette.label.clone(),
+            params: self.params().map(|(name, value, _)| (name.to_owned(), value)).collect(),
+            core: match fault {
+                None => spec.core.if_offered(built, &whole),
+                Some(_) => Core::Textbook,
+            },
+            samples: grid.samples.unwrap_or(spec.samples),
+            block: run.unwrap_or(0),
+            traced: run.is_some(),
+            runs: 1,
+            pixels: pixels(built),
+            rays: rays(scene, built, &whole),
+            finds_all: reach::finds_all(&whole, built, sees_smooth),
+            address: address(spec, scene, &whole, fault),
+            paired: spec.streams == Streams::Paired,
+            streams: Vec::new(),
+            may_stop: false,
+        }
+    }
 }
 
 /// The choices of one axis of the grid, their sweeps written out.
