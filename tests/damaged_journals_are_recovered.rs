@@ -104,7 +104,7 @@ fn a_whole_journal_has_all_blocks() {
     assert!(cells == undisturbed(&plan));
     assert!(cells[0].cost.n < plan.cells[0].samples, "a cell is to end early");
     assert!(
-        plan.cells[2].unit() > 1 && plan.cells[2].blocks() % plan.cells[2].unit() > 0,
+        plan.cells[2].unit() > 1 && !plan.cells[2].blocks().is_multiple_of(plan.cells[2].unit()),
         "a short last unit"
     );
     assert_eq!(told, [""; 0]);

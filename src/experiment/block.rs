@@ -148,7 +148,14 @@ impl Block {
     /// Whether it has so many realizations and these bets, and all lists have their length: it may come from a file.
     pub(super) fn fits(&self, realizations: u64, streams: &[Stream]) -> bool {
         let counts = self.total.iter().chain([&self.cost]).map(|moments| moments.n);
+        let Tally { rays, non_finite, negative, runaway, starved, .. } = self.tally;
+        let few = [rays, non_finite, negative, runaway, starved].iter().all(|count| *count < 1 << 60);
+        let lengths = self.lengths.iter().try_fold(0, |sum: u64, count| sum.checked_add(*count));
         counts.chain(self.tails.iter().map(|tail| tail.n)).all(|n| n == realizations)
+            && few
+            && self.zeros <= realizations
+            && lengths == Some(realizations)
+            && self.bets.iter().all(|bets| bets.void <= bets.n && bets.n <= realizations)
             && self.bets.iter().map(|bets| bets.stake).eq(streams.iter().map(|stream| stream.stake))
             && self.lengths.len() == LENGTHS
             && self.tails.iter().all(|tail| tail.largest.len() <= KEPT)

@@ -1,6 +1,7 @@
 //! Whatever the program reads from outside, one function a kind: each takes any bytes, and panics where a promise about them
 //! is broken. The tests call them with what is stored in `corpus/`, and libFuzzer with what it makes up (`fuzz/`).
 
+mod journal;
 mod results;
 mod scene;
 mod stored_image;
@@ -13,7 +14,7 @@ use std::path::Path;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All of them. A new kind of file is added here, as a file in `fuzz/fuzz_targets`, and as a `[[bin]]` of `fuzz/Cargo.toml`.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     ("experiment", written::experiment),
     ("scene", scene::scene),
     ("set", written::set),
@@ -22,6 +23,7 @@ pub const TARGETS: [Target; 9] = [
     ("study", results::study),
     ("summary", results::summary),
     ("baseline", results::baseline),
+    ("journal", journal::journal),
     ("reference", stored_image::reference),
 ];
 
