@@ -31,10 +31,14 @@ const WAITING: f64 = 268_435_456.0;
 /// Most blocks that wait to be merged.
 const MOST: f64 = 256.0;
 
+/// Bytes of an image of a cell.
+fn image(cell: &CellPlan) -> f64 {
+    if cell.pixels > 1 { PIXEL * cell.pixels as f64 } else { 0.0 }
+}
+
 /// Bytes of one block.
 fn block(cell: &CellPlan) -> f64 {
-    let image = if cell.pixels > 1 { PIXEL * cell.pixels as f64 } else { 0.0 };
-    BLOCK + image + STREAM * cell.streams.len() as f64
+    BLOCK + image(cell) + STREAM * cell.streams.len() as f64
 }
 
 /// Blocks that may be begun and not merged: two a thread at least, so that none waits for the one that merges.
@@ -46,9 +50,8 @@ pub fn window(cell: &CellPlan, threads: usize) -> usize {
 /// About how many bytes a cell takes at most while it is sampled by so many threads; the program itself is not counted.
 pub fn foreseen(cell: &CellPlan, threads: usize) -> f64 {
     let waiting = window(cell, threads).min(cell.blocks() as usize) as f64 * block(cell);
-    let image = if cell.pixels > 1 { PIXEL * cell.pixels as f64 } else { 0.0 };
     // the merged image, a unit of it, its bytes, and the variance of its pixels
-    let merged = 4.0 * image + LEFT * cell.blocks() as f64;
+    let merged = 4.0 * image(cell) + LEFT * cell.blocks() as f64;
     let maps = match &cell.estimator {
         Estimator::PhotonMap(map) => threads as f64 * PARTICLE * map.photons as f64,
         _ => 0.0,
@@ -60,8 +63,7 @@ pub fn foreseen(cell: &CellPlan, threads: usize) -> f64 {
 pub fn journal(cell: &CellPlan) -> f64 {
     let blocks = cell.blocks() as f64;
     let units = (blocks / cell.unit() as f64).ceil();
-    let image = if cell.pixels > 1 { PIXEL * cell.pixels as f64 } else { 0.0 };
-    blocks * (RECORD + BETS * cell.streams.len() as f64) + units * image
+    blocks * (RECORD + BETS * cell.streams.len() as f64) + units * image(cell)
 }
 
 /// Of several cells, which are sampled one after the other.

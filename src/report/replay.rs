@@ -19,7 +19,7 @@ pub fn block(plan: &Plan, cell: usize, block: u64) -> String {
 }
 
 /// A word as a shell wants it: bare if it is plain, else in quotes, in which control characters are escaped.
-pub fn quoted(word: &str) -> String {
+fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._/=-".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return word.to_owned();

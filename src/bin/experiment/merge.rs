@@ -73,7 +73,7 @@ fn common(scans: &[Scan]) -> Result<&Header, Error> {
 fn tell(overlap: &Overlap, plan: &Plan) {
     if let Some((cell, blocks, [one, other])) = &overlap.first {
         let label = plan.label(&plan.cells[*cell]);
-        let (units, blocks) = (overlap.units, shown(blocks));
+        let (units, blocks) = (overlap.units, journal::named(blocks));
         eprintln!(
             "{units} lines are in two journals, with the same numbers: first {blocks} of `{label}`, in {} and {}",
             one.display(),
@@ -94,7 +94,7 @@ fn told(gaps: &[(usize, Vec<Range<u64>>)], plan: &Plan) -> String {
                 None => joined.push(blocks.clone()),
             }
         }
-        let mut list: Vec<String> = joined.iter().take(SHOWN).map(shown).collect();
+        let mut list: Vec<String> = joined.iter().take(SHOWN).map(journal::named).collect();
         if joined.len() > SHOWN {
             list.push(format!("and {} more gaps", joined.len() - SHOWN));
         }
@@ -104,12 +104,4 @@ fn told(gaps: &[(usize, Vec<Range<u64>>)], plan: &Plan) -> String {
         text.push_str(&format!("\n  {label}: {lost} of {all}: {}", list.join(", ")));
     }
     text
-}
-
-/// Blocks by their numbers.
-fn shown(blocks: &Range<u64>) -> String {
-    match blocks.end - blocks.start {
-        1 => format!("block {}", blocks.start),
-        _ => format!("blocks {} to {}", blocks.start, blocks.end - 1),
-    }
 }

@@ -110,7 +110,7 @@ impl Header {
                 Some((line, ours, theirs)) => {
                     format!("`{label}` is another: line {line} of the file was `{theirs}` and is `{ours}`")
                 }
-                None => format!("`{label}` is another, after other options than {}", "today's"),
+                None => format!("`{label}` is another, after other options"),
             });
         }
         (self.sources != other.sources)

@@ -1,6 +1,7 @@
 //! Blocks that journals hold, found by cell and number.
 
 use super::line::{Line, unescape};
+use super::named;
 use super::scan::{Place, Scan};
 use crate::experiment::error::Error;
 use crate::experiment::guard::Failure;
@@ -146,10 +147,7 @@ impl Kept {
         if self.line == self.other {
             return Ok(());
         }
-        let blocks = match a.count {
-            1 => format!("block {}", a.first),
-            _ => format!("blocks {} to {}", a.first, a.numbers().end - 1),
-        };
+        let blocks = named(&a.numbers());
         Err(Error::Refused(format!(
             "{blocks} of `{}` in {} (line {}) and in {} (line {}) have other numbers: one of them is wrong",
             self.labels[a.cell as usize],

@@ -19,6 +19,7 @@ pub use write::{Journal, Start, is_written};
 
 use super::error::Error;
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A part of a run: the units of a cell go round among the parts.
@@ -66,6 +67,14 @@ impl std::str::FromStr for Shard {
             }
             _ => Err("a shard is written as 3/16: the third of sixteen".to_owned()),
         }
+    }
+}
+
+/// Blocks by their numbers.
+pub fn named(blocks: &Range<u64>) -> String {
+    match blocks.end - blocks.start {
+        1 => format!("block {}", blocks.start),
+        _ => format!("blocks {} to {}", blocks.start, blocks.end - 1),
     }
 }
 
